@@ -1,0 +1,117 @@
+// packet.h: the frame packet: one relocatable block that says all about one frame.
+//
+// Data in: built by systems/packet_build.c from the world. Data out: read by render/ (which sees
+// nothing else but the loaded assets) and written to frame files by capture/. Offsets, no pointers;
+// const once built; the GPU records lie in it in the layout that shaders read (shaders/shared.h),
+// so that an upload is a copy.
+// Sections start on CACHE_LINE; offsets count from the start of the block.
+#ifndef LUZ_PACKET_H
+#define LUZ_PACKET_H
+#include "../base/arena.h"
+#include "../../shaders/shared.h"
+#include "settings.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PACKET_MAGIC   0x4B505A4Cu // "LZPK"
+#define PACKET_VERSION 1u
+
+typedef struct PacketSection { u32 offset, count; } PacketSection; // bytes, elements
+
+// One drawcall: instances [first, first + count) of the instance section.
+typedef struct PacketDraw {
+    u32 mesh;     // asset store id
+    u32 material; // index into materials
+    u32 first_instance, instance_count;
+} PacketDraw;
+
+// What the renderer needs of a material beside its MaterialRecord.
+typedef struct PacketMaterial {
+    u32 albedo_texture, normal_texture, emissive_texture; // asset store ids, 0 = none
+    u32 alpha_mode;   // AlphaMode
+    u32 double_sided;
+    u32 emissive_pass; // 1: has an emissive texture, drawn additively after lighting
+} PacketMaterial;
+
+// Text over the picture, in internal pixels from the upper left.
+typedef struct PacketText {
+    f32 x_px, y_px, size_px;
+    u32 color;              // RGBA8 sRGB, red in the low byte
+    u32 offset, length;     // into the characters section
+} PacketText;
+
+typedef enum PacketFlags {
+    PACKET_REVOXELISE = 1 << 0, // a dynamic instance changed since the last packet
+    PACKET_RELIGHT = 1 << 1,    // a light or emission changed
+} PacketFlags;
+
+// X(name, element type)
+#define PACKET_SECTIONS(X)                                                                 \
+    X(instances, InstanceRecord)       /* visible ones, in draw order; then shadow casters */ \
+    X(opaque_draws, PacketDraw)        /* alpha mode opaque, sorted by material and mesh */  \
+    X(mask_draws, PacketDraw)          /* alpha mode mask */                                 \
+    X(blend_draws, PacketDraw)         /* alpha mode blend, far to near */                   \
+    X(emissive_draws, PacketDraw)      /* those of the above with an emissive texture */     \
+    X(shadow_draws, PacketDraw)        /* casters within the shadow map, opaque */           \
+    X(shadow_mask_draws, PacketDraw)   /* casters, alpha mask */                             \
+    X(materials, MaterialRecord)                                                             \
+    X(material_bindings, PacketMaterial) /* same count */                                    \
+    X(lights, LightRecord)             /* points, spots, then one dummy that lights nothing */ \
+    X(spots, SpotRecord)                                                                     \
+    X(directionals, DirectionalRecord)                                                       \
+    X(tiles, TileRecord)               /* row by row from the upper left */                  \
+    X(light_indices, u32)              /* into lights */                                     \
+    X(gi_lights, LightRecord)          /* all that affect GI, also outside the view */       \
+    X(texts, PacketText)                                                                     \
+    X(characters, u8)
+
+typedef struct PacketCounts {
+    u32 lights_total, lights_visible, lights_shaded;       // local lights: level, frustum, in lists
+    u32 drawables_total, drawables_visible, shadow_casters;
+    u32 triangles;                                         // of visible drawables
+    u32 tile_count, tile_light_max, light_index_count;
+} PacketCounts;
+
+typedef struct Packet {
+    u32 magic, version;
+    u64 size;           // bytes, of the whole block
+    u32 tick, flags;    // PacketFlags
+    u32 width_px, height_px;   // internal resolution
+    u32 shadow_size_px;        // 0 = no shadow map this frame
+    u32 brdf_mask, attenuation; // specialisation: what this level uses
+    u32 reserved;
+    u64 shadow_key;     // hash of all that the shadow map shows: unchanged = the old one serves
+    RenderSettings settings;
+    PacketCounts counts;
+    FrameRecord frame;
+#define X(name, Type) PacketSection name;
+    PACKET_SECTIONS(X)
+#undef X
+} Packet;
+
+// First element of a section: PACKET_DATA(packet, lights, LightRecord).
+#define PACKET_DATA(packet, section, Type) \
+    ((const Type *)((const u8 *)(packet) + (packet)->section.offset))
+
+// Building: begin with all counts known, then fill the sections through PACKET_WRITE.
+typedef struct PacketSizes {
+#define X(name, Type) u32 name;
+    PACKET_SECTIONS(X)
+#undef X
+} PacketSizes;
+// Zeroed block in the arena with the sections laid out.
+Packet *packet_allocate(Arena *arena, const PacketSizes *sizes);
+#define PACKET_WRITE(packet, section, Type) ((Type *)((u8 *)(packet) + (packet)->section.offset))
+
+// Is this block from a stranger safe to render? Checks magic, version, size, every section's range
+// and alignment, every index (meshes < mesh_count, textures < texture_count, instances, materials,
+// lights, tiles), finite matrices, resolution limits. Returns NULL if all is well, else a sentence.
+const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 texture_count);
+
+#define PACKET_SIDE_MAX 16384 // px
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,119 @@
+// systems.h: plain functions over whole columns, and the table in which they run.
+//
+// A tick: for each row of the table: advance the world's stamp, call the function. A frame:
+// packet_build reads the world and writes a packet. Systems are single calls on the main thread;
+// inside they may use jobs_for over disjoint rows.
+#ifndef LUZ_SYSTEMS_H
+#define LUZ_SYSTEMS_H
+#include "../asset/asset.h"
+#include "../frame/packet.h"
+#include "../world/input.h"
+#include "../world/world.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct CollisionWorld CollisionWorld; // collision.c: static triangles in a grid, boxes
+
+typedef struct SystemContext {
+    World *world;
+    const AssetStore *assets;
+    CollisionWorld *collision; // NULL = nothing to bump into
+    Input input;               // of this tick
+    Arena *scratch;
+    void *user;                // the game's
+    u32 last_stamp;            // world stamp when this system last began (0 at the first time)
+} SystemContext;
+
+typedef void (*SystemFunction)(SystemContext *context);
+typedef struct System {
+    const char *name;
+    const char *reads, *writes; // component names, for readers and for the inspector
+    SystemFunction function;
+} System;
+
+#define SYSTEMS_CAP 64
+typedef struct SystemTable {
+    System rows[SYSTEMS_CAP];
+    u32 last_stamp[SYSTEMS_CAP];
+    f32 ms[SYSTEMS_CAP]; // time of the last tick, for the panel
+    u32 count;
+} SystemTable;
+
+// Engine's table: animate, (game systems are inserted here), walk, transform, bounds.
+void systems_create(SystemTable *table);
+// Before the row called `before`; NULL = at the end. False at the cap or if there is none such.
+bool systems_insert(SystemTable *table, const char *before, const System *system);
+// One 60 Hz tick: runs all rows in order, then tick++.
+void systems_tick(SystemTable *table, SystemContext *context);
+// Derived columns (world matrices, bounds) without advancing time: after loading.
+void systems_settle(SystemTable *table, SystemContext *context);
+
+void system_animate(SystemContext *context);   // orbit path flicker pulse -> transform.offset, light.gain
+void system_walk(SystemContext *context);      // input -> walker, transform (collision.c)
+void system_transform(SystemContext *context); // hierarchy -> transform.w, drawable.w, light.x..reach
+void system_bounds(SystemContext *context);    // drawable.bounds
+
+// --- Culling (visibility.c) ---
+
+typedef struct Frustum { f32 planes[6][4]; u32 count; } Frustum; // inside: dot(n, p) + d >= 0
+// From a world-to-clip matrix with infinite far plane: left right bottom top near.
+Frustum frustum_from_matrix(const Mat4 *view_projection);
+// Indices (ascending) of spheres that touch the frustum. Arrays are columns (aligned, padded to
+// SIMD_WIDTH); radius < 0 = never visible. out has room for count rounded up to SIMD_WIDTH.
+// Returns how many.
+u32 cull_spheres(const Frustum *frustum, const f32 *x, const f32 *y, const f32 *z,
+                 const f32 *radius, u32 count, u32 *out);
+
+// --- Light grid (light_grid.c) ---
+
+// Exact screen bounds of a sphere (specification of direct lighting, section 6.1, after Lengyel):
+// view-space centre and radius; projection scale = cot(fov/2) along the axis, near plane in m.
+// Result in NDC, clipped to [-1, 1]. Returns false if no part of it is in front of the near plane
+// within the view along this axis.
+bool sphere_bounds_axis(f32 center, f32 center_z, f32 radius, f32 near, f32 scale, f32 *ndc_min,
+                        f32 *ndc_max);
+typedef struct LightGridInput {
+    const f32 *x, *y, *z, *radius; // view space; [count]
+    u32 count, point_count;        // lights >= point_count are spots
+    u32 width_px, height_px, tile_px;
+    f32 near, scale_x, scale_y;    // projection scales
+} LightGridInput;
+typedef struct LightGrid {
+    TileRecord *tiles; // [tiles_x * tiles_y], rows from the upper left
+    u32 *indices;      // ascending within a tile
+    u32 tiles_x, tiles_y, index_count;
+    u32 longest;       // lights in the fullest tile
+} LightGrid;
+// Count, prefix sum, fill (stable). Memory from the arena.
+LightGrid light_grid_build(const LightGridInput *input, Arena *arena);
+
+// --- Packet (packet_build.c) ---
+
+typedef struct PacketText2D { f32 x_px, y_px, size_px; u32 color; const char *text; } PacketText2D;
+typedef struct PacketBuildDesc {
+    const World *world;
+    const AssetStore *assets;
+    Entity camera;              // entity with transform and camera; ENTITY_NONE = identity, 60 deg
+    RenderSettings settings;
+    u32 width_px, height_px;    // internal resolution
+    const PacketText2D *texts;
+    u32 text_count;
+    u32 last_stamp;             // world stamp of the previous packet: for the flags
+} PacketBuildDesc;
+typedef struct PacketBuildTimes { f32 cull_ms, lights_ms, grid_ms, pack_ms; } PacketBuildTimes;
+// The packet lies in `out`; scratch is used and given back. times may be NULL.
+const Packet *packet_build(const PacketBuildDesc *desc, Arena *out, Arena *scratch,
+                           PacketBuildTimes *times);
+
+// --- Collision (collision.c) ---
+
+// Gathers triangles of instances with collision = mesh (static ones, by the level's rest pose)
+// into a grid; boxes follow their instance every tick. Call after loading a level.
+CollisionWorld *collision_create(const World *world, const AssetStore *assets);
+void collision_destroy(CollisionWorld *collision);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,219 @@
+// components.h: the engine's own components, each declared once (see table.h for the list form).
+//
+// Data in level units: metres, degrees, seconds, linear colour, candela-like intensity (irradiance
+// at distance d is color * intensity / d^2). Derived columns (empty key) say who writes them.
+#ifndef LUZ_COMPONENTS_H
+#define LUZ_COMPONENTS_H
+#include "table.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define COLUMNS_VEC3_(C, a, b, c, unit, initial, key, min, max, help) \
+    C(F32, a, unit, initial, key "[0]", min, max, help)               \
+    C(F32, b, unit, initial, key "[1]", min, max, help)               \
+    C(F32, c, unit, initial, key "[2]", min, max, help)
+#define COLUMNS_DERIVED3_(C, a, b, c, unit, help) \
+    C(F32, a, unit, 0, "", 0, 0, help)            \
+    C(F32, b, unit, 0, "", 0, 0, help)            \
+    C(F32, c, unit, 0, "", 0, 0, help)
+#define COLUMNS_MAT34_(C, p, help)                                                          \
+    C(F32, p##00, "", 1, "", 0, 0, help) C(F32, p##01, "", 0, "", 0, 0, help)               \
+    C(F32, p##02, "", 0, "", 0, 0, help) C(F32, p##03, "m", 0, "", 0, 0, help)              \
+    C(F32, p##10, "", 0, "", 0, 0, help) C(F32, p##11, "", 1, "", 0, 0, help)               \
+    C(F32, p##12, "", 0, "", 0, 0, help) C(F32, p##13, "m", 0, "", 0, 0, help)              \
+    C(F32, p##20, "", 0, "", 0, 0, help) C(F32, p##21, "", 0, "", 0, 0, help)               \
+    C(F32, p##22, "", 1, "", 0, 0, help) C(F32, p##23, "m", 0, "", 0, 0, help)
+
+// Where an entity is. World = parent's world * T(position + offset) * Ry * Rx * Rz * S.
+// The key "parent" of level text (beside the component tables) fills `parent`.
+#define TRANSFORM_COLUMNS(C)                                                                      \
+    COLUMNS_VEC3_(C, x, y, z, "m", 0, "position", -1e5, 1e5, "position in the parent's space")    \
+    COLUMNS_VEC3_(C, pitch, yaw, roll, "deg", 0, "rotation", -36000, 36000,                       \
+                  "rotation about x, y, z; applied y, then x, then z")                            \
+    COLUMNS_VEC3_(C, scale_x, scale_y, scale_z, "", 1, "scale", -1e4, 1e4, "scale")               \
+    C(ENTITY, parent, "transform", 0, "", 0, 0, "transform is relative to this entity")           \
+    COLUMNS_DERIVED3_(C, offset_x, offset_y, offset_z, "m", "animate: added to the position")     \
+    COLUMNS_MAT34_(C, w, "transform: world matrix, 3 rows of 4")
+
+// A model placed in the world. Its parts become rows of `drawable` (entities of their own).
+#define INSTANCE_COLUMNS(C)                                                                       \
+    C(ENTITY, model, "model", 0, "model", 0, 0, "what to draw")                                   \
+    C(ENTITY, material, "material", 0, "material", 0, 0, "replaces the model's own materials")    \
+    C(ENUM, voxel_mode, "none static dynamic", 1, "voxel_mode", 0, 2, "how it enters the voxels") \
+    C(BOOL, casts_shadow, "", 1, "casts_shadow", 0, 1, "drawn into shadow maps")                  \
+    C(ENUM, collision, "none mesh box", 0, "collision", 0, 2, "what a walker bumps into")         \
+    C(BOOL, visible, "", 1, "visible", 0, 1, "drawn at all")
+
+// One mesh with one material: what culling and drawing see. Made from instances by level/ (the
+// entity has no transform: owner's world * local gives its own).
+#define DRAWABLE_COLUMNS(C)                                                                       \
+    C(ENTITY, owner, "instance", 0, "", 0, 0, "entity with transform and instance")               \
+    C(U32, mesh, "", 0, "", 0, 0, "mesh id of the asset store")                                   \
+    C(ENTITY, material, "material", 0, "", 0, 0, "entity with the material")                      \
+    COLUMNS_MAT34_(C, l, "part's matrix in its model, 3 rows of 4")                               \
+    COLUMNS_MAT34_(C, w, "transform: world matrix, 3 rows of 4")                                  \
+    C(F32, bounds_x, "m", 0, "", 0, 0, "bounds: sphere's centre, world")                          \
+    C(F32, bounds_y, "m", 0, "", 0, 0, "bounds: sphere's centre, world")                          \
+    C(F32, bounds_z, "m", 0, "", 0, 0, "bounds: sphere's centre, world")                          \
+    C(F32, bounds_radius, "m", 0, "", 0, 0, "bounds: radius; negative = hidden")
+
+// A light. Points and spots have an inverse-square falloff windowed to `range` by default.
+// Directional and spot lights shine along the entity's -z.
+#define LIGHT_COLUMNS(C)                                                                          \
+    C(ENUM, kind, "point spot directional", 0, "kind", 0, 2, "type of light")                     \
+    C(F32, color_r, "linear", 1, "color[0]", 0, 1000, "colour")                                   \
+    C(F32, color_g, "linear", 1, "color[1]", 0, 1000, "colour")                                   \
+    C(F32, color_b, "linear", 1, "color[2]", 0, 1000, "colour")                                   \
+    C(F32, intensity, "cd", 1, "intensity", 0, 1e6, "candela (lux for directional)")              \
+    C(F32, range, "m", 0, "range", 0, 1e4, "reach; 0 = where it falls below 1/256")               \
+    C(F32, inner_angle, "deg", 20, "inner_angle", 0, 89, "spot: half-angle of the full cone")     \
+    C(F32, outer_angle, "deg", 35, "outer_angle", 0.1, 89, "spot: half-angle of the edge")        \
+    C(BOOL, casts_shadow, "", 0, "casts_shadow", 0, 1, "has a shadow map (directional)")          \
+    C(BOOL, is_static, "", 0, "static", 0, 1, "never moves or changes")                           \
+    C(BOOL, affects_gi, "", 1, "affects_gi", 0, 1, "lights the voxels")                           \
+    C(F32, priority, "", 1, "priority", 0, 100, "weight under a light budget")                    \
+    COLUMNS_DERIVED3_(C, x, y, z, "m", "transform: world position")                               \
+    COLUMNS_DERIVED3_(C, dir_x, dir_y, dir_z, "", "transform: unit direction it shines, world")   \
+    C(F32, reach, "m", 0, "", 0, 0, "transform: range in use")                                    \
+    C(F32, gain, "", 1, "", 0, 0, "animate: factor on the intensity")
+
+// Animations of lights and instances; each adds to transform.offset or multiplies light.gain.
+#define ORBIT_COLUMNS(C)                                                                          \
+    COLUMNS_VEC3_(C, radius_x, radius_y, radius_z, "m", 1, "radius", 0, 1e4,                      \
+                  "half-axes of a slow closed curve about the position")                          \
+    C(F32, period, "s", 8, "period", 0.05, 1e5, "time of one round")                              \
+    C(F32, phase, "deg", 0, "phase", -36000, 36000, "where it starts")
+#define PATH_COLUMNS(C)                                                                           \
+    C(POINTS, points, "m", 0, "points", 0, 0, "closed Catmull-Rom curve of offsets")              \
+    C(F32, period, "s", 8, "period", 0.05, 1e5, "time of one round")                              \
+    C(F32, phase, "deg", 0, "phase", -36000, 36000, "where it starts")
+#define FLICKER_COLUMNS(C)                                                                        \
+    C(F32, amount, "", 0.3, "amount", 0, 1, "share of the intensity that comes and goes")         \
+    C(F32, rate, "Hz", 8, "rate", 0.01, 30, "how fast")
+#define PULSE_COLUMNS(C)                                                                          \
+    C(F32, amount, "", 0.5, "amount", 0, 1, "share of the intensity that comes and goes")         \
+    C(F32, period, "s", 2, "period", 0.05, 1e5, "time of one swell")                              \
+    C(F32, phase, "deg", 0, "phase", -36000, 36000, "where it starts")
+
+#define CAMERA_COLUMNS(C)                                                                         \
+    C(F32, fov, "deg", 60, "fov", 5, 150, "vertical field of view")                               \
+    C(F32, near, "m", 0.1, "near", 0.001, 10, "near plane (there is no far plane)")
+
+// One who walks or flies by input; its camera is the entity's own.
+#define WALKER_COLUMNS(C)                                                                         \
+    C(F32, speed, "m/s", 3.2, "speed", 0, 100, "walking speed")                                   \
+    C(F32, height, "m", 1.75, "height", 0.3, 10, "height of the body, eyes 0.12 below the top")   \
+    C(F32, radius, "m", 0.3, "radius", 0.05, 3, "radius of the body")                             \
+    C(BOOL, fly, "", 0, "fly", 0, 1, "free flight, no collision")                                 \
+    COLUMNS_DERIVED3_(C, velocity_x, velocity_y, velocity_z, "m/s", "walk: velocity")             \
+    C(BOOL, grounded, "", 0, "", 0, 1, "walk: stands on something")
+
+// A model file or a generated shape. Filled from [[model]] of level text.
+#define MODEL_COLUMNS(C)                                                                          \
+    C(U32, model, "", 0, "", 0, 0, "model id of the asset store")                                 \
+    C(ENTITY, first_material, "material", 0, "", 0, 0,                                            \
+      "its materials are entities with consecutive indices from here, in the file's order")
+
+#define MATERIAL_COLUMNS(C)                                                                       \
+    C(F32, albedo_r, "linear", 0.8, "albedo[0]", 0, 1, "diffuse reflectance")                     \
+    C(F32, albedo_g, "linear", 0.8, "albedo[1]", 0, 1, "diffuse reflectance")                     \
+    C(F32, albedo_b, "linear", 0.8, "albedo[2]", 0, 1, "diffuse reflectance")                     \
+    C(F32, specular_r, "linear", 0.04, "specular[0]", 0, 1, "specular colour")                    \
+    C(F32, specular_g, "linear", 0.04, "specular[1]", 0, 1, "specular colour")                    \
+    C(F32, specular_b, "linear", 0.04, "specular[2]", 0, 1, "specular colour")                    \
+    C(F32, power, "", 32, "power", 1, 2048, "specular power (2/a^2 - 2, a = roughness^2)")        \
+    C(F32, emissive_r, "linear", 0, "emissive[0]", 0, 1, "emitted colour")                        \
+    C(F32, emissive_g, "linear", 0, "emissive[1]", 0, 1, "emitted colour")                        \
+    C(F32, emissive_b, "linear", 0, "emissive[2]", 0, 1, "emitted colour")                        \
+    C(F32, emissive_strength, "", 1, "emissive_strength", 0, 1e5, "factor on it (radiance)")      \
+    C(ENUM, brdf, "lambert phong blinn_phong blinn_phong_normalized", 3, "brdf", 0, 3,            \
+      "specular lobe (lambert = none)")                                                           \
+    C(ENUM, diffuse, "lambert oren_nayar", 0, "diffuse", 0, 1, "diffuse lobe")                    \
+    C(F32, diffuse_roughness, "rad", 0.5, "diffuse_roughness", 0, 1.5, "Oren-Nayar sigma")        \
+    C(BOOL, fresnel, "", 0, "fresnel", 0, 1, "Schlick Fresnel on the specular lobe")              \
+    C(ENUM, alpha_mode, "opaque mask blend", 0, "alpha_mode", 0, 2, "how alpha is used")          \
+    C(F32, alpha_cutoff, "", 0.5, "alpha_cutoff", 0, 1, "mask: below this is a hole")             \
+    C(BOOL, double_sided, "", 0, "double_sided", 0, 1, "back faces are drawn")                    \
+    C(BOOL, receives_dynamic_light, "", 1, "receives_dynamic_light", 0, 1, "lit by lights")       \
+    C(TEXTURE, albedo_texture, "srgb", 0, "albedo_texture", 0, 0, "colour and alpha")             \
+    C(TEXTURE, normal_texture, "linear", 0, "normal_texture", 0, 0, "tangent-space normals")      \
+    C(TEXTURE, emissive_texture, "srgb", 0, "emissive_texture", 0, 0, "emitted colour")
+
+// The level as a whole.
+#define ENVIRONMENT_COLUMNS(C)                                                                    \
+    C(F32, ambient_r, "linear", 0.03, "ambient[0]", 0, 100, "light from everywhere")              \
+    C(F32, ambient_g, "linear", 0.03, "ambient[1]", 0, 100, "light from everywhere")              \
+    C(F32, ambient_b, "linear", 0.03, "ambient[2]", 0, 100, "light from everywhere")              \
+    C(F32, ambient_intensity, "", 1, "ambient_intensity", 0, 1000, "factor on it")                \
+    C(F32, sky_zenith_r, "linear", 0.02, "sky_zenith[0]", 0, 100, "sky above")                    \
+    C(F32, sky_zenith_g, "linear", 0.03, "sky_zenith[1]", 0, 100, "sky above")                    \
+    C(F32, sky_zenith_b, "linear", 0.06, "sky_zenith[2]", 0, 100, "sky above")                    \
+    C(F32, sky_horizon_r, "linear", 0.05, "sky_horizon[0]", 0, 100, "sky at the horizon")         \
+    C(F32, sky_horizon_g, "linear", 0.06, "sky_horizon[1]", 0, 100, "sky at the horizon")         \
+    C(F32, sky_horizon_b, "linear", 0.09, "sky_horizon[2]", 0, 100, "sky at the horizon")         \
+    C(F32, stars, "", 0, "stars", 0, 10, "brightness of stars")                                   \
+    C(F32, exposure, "", 1, "exposure", 0, 1000, "factor before tone mapping")                    \
+    C(ENUM, attenuation, "inverse_square window polynomial", 0, "attenuation", 0, 2,              \
+      "falloff of point and spot lights")                                                         \
+    C(F32, attenuation_constant, "", 1, "attenuation_constant", 0, 1000, "polynomial: kc")        \
+    C(F32, attenuation_linear, "1/m", 0, "attenuation_linear", 0, 1000, "polynomial: kl")         \
+    C(F32, attenuation_quadratic, "1/m2", 1, "attenuation_quadratic", 0, 1000, "polynomial: kq")  \
+    C(F32, shadow_distance, "m", 40, "shadow_distance", 1, 1000, "reach of the shadow map")       \
+    C(U32, shadow_size, "px", 1024, "shadow_size", 64, 4096, "side of the shadow map")            \
+    C(F32, gravity, "m/s2", 9.81, "gravity", 0, 100, "pull on walkers")
+
+// X(Name, name, COLUMNS, singleton, help)
+#define ENGINE_COMPONENTS(X)                                                                      \
+    X(Transform, transform, TRANSFORM_COLUMNS, false, "place, rotation and size")                 \
+    X(Instance, instance, INSTANCE_COLUMNS, false, "a model placed in the world")                 \
+    X(Drawable, drawable, DRAWABLE_COLUMNS, false, "one mesh with one material (derived)")        \
+    X(Light, light, LIGHT_COLUMNS, false, "a light")                                              \
+    X(Orbit, orbit, ORBIT_COLUMNS, false, "moves on a closed curve")                              \
+    X(Path, path, PATH_COLUMNS, false, "moves through points")                                    \
+    X(Flicker, flicker, FLICKER_COLUMNS, false, "light burns unsteadily")                         \
+    X(Pulse, pulse, PULSE_COLUMNS, false, "light swells and fades")                               \
+    X(Camera, camera, CAMERA_COLUMNS, false, "a view")                                            \
+    X(Walker, walker, WALKER_COLUMNS, false, "walks or flies by input")                           \
+    X(Model, model, MODEL_COLUMNS, false, "a model file or generated shape (derived)")            \
+    X(Material, material, MATERIAL_COLUMNS, false, "a surface")                                   \
+    X(Environment, environment, ENVIRONMENT_COLUMNS, true, "the level as a whole")
+
+enum {
+#define X(Name, name, ...) COMPONENT_##name,
+    ENGINE_COMPONENTS(X)
+#undef X
+        COMPONENT_ENGINE_COUNT
+};
+#define X(Name, name, COLUMNS, ...) TABLE_STRUCT(Name, COLUMNS)
+ENGINE_COMPONENTS(X)
+#undef X
+#define X(Name, name, ...) extern const ComponentDesc name##_component;
+ENGINE_COMPONENTS(X)
+#undef X
+
+typedef enum LightKind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DIRECTIONAL } LightKind;
+typedef enum VoxelMode { VOXEL_NONE, VOXEL_STATIC, VOXEL_DYNAMIC } VoxelMode;
+typedef enum CollisionMode { COLLISION_NONE, COLLISION_MESH, COLLISION_BOX } CollisionMode;
+typedef enum Brdf { BRDF_LAMBERT, BRDF_PHONG, BRDF_BLINN_PHONG, BRDF_BLINN_PHONG_NORMALIZED } Brdf;
+typedef enum DiffuseLobe { DIFFUSE_LAMBERT, DIFFUSE_OREN_NAYAR } DiffuseLobe;
+typedef enum AlphaMode { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND } AlphaMode;
+typedef enum Attenuation {
+    ATTENUATION_INVERSE_SQUARE,
+    ATTENUATION_WINDOW,
+    ATTENUATION_POLYNOMIAL
+} Attenuation;
+
+// A row's matrix columns (p00..p23 are consecutive) as one Mat34 and back. `first` is the
+// address of the table's pointer to column p00.
+static inline void columns_get_mat34(f32 *const *first, u32 row, f32 out[12]) {
+    for (u32 i = 0; i < 12; i++) out[i] = first[i][row];
+}
+static inline void columns_set_mat34(f32 *const *first, u32 row, const f32 in[12]) {
+    for (u32 i = 0; i < 12; i++) first[i][row] = in[i];
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,125 @@
+// shared.h: what C and GLSL must agree on: structs, bindings, limits. Included by both; a test
+// compares it with SPIR-V reflection. Only 4-byte scalars and vec4 (std430 without padding).
+#ifndef LUZ_SHARED_H
+#define LUZ_SHARED_H
+
+#ifdef GL_core_profile
+#define SHARED_STRUCT(Name) struct Name
+#define SHARED_END(Name)    ;
+#else
+#include <stdint.h>
+typedef float vec4[4];
+typedef uint32_t uvec4[4];
+typedef float mat4[16]; // column-major
+#define SHARED_STRUCT(Name) typedef struct Name
+#define SHARED_END(Name)    Name;
+
+// Vertex of every mesh: 32 bytes, one interleaved stream. The depth-only passes read it as well:
+// 12 of 32 bytes are used there, measured cheaper than a second stream on few vertices.
+typedef struct MeshVertex {
+    float position[3];
+    uint32_t normal;  // octahedral, 2 x snorm16 (x low)
+    float uv[2];
+    uint32_t tangent; // octahedral, snorm16 x low, snorm15 y, highest bit: sign is -1
+    uint32_t color;   // RGBA8 unorm, linear
+} MeshVertex;
+#endif
+
+// --- Set 0: the frame. Every pipeline has the same layout, every binding is always written. ---
+#define BINDING_FRAME           0  // FrameRecord, storage buffer (uniform buffers in control flow
+                                   // make the software driver recompile shaders every frame)
+#define BINDING_INSTANCES       1  // InstanceRecord[]
+#define BINDING_MATERIALS       2  // MaterialRecord[]
+#define BINDING_LIGHTS          3  // LightRecord[]: points first, then spots; one dummy at the end
+#define BINDING_SPOTS           4  // SpotRecord[]: of light index - point_count
+#define BINDING_DIRECTIONALS    5  // DirectionalRecord[]
+#define BINDING_TILES           6  // TileRecord[]
+#define BINDING_LIGHT_INDICES   7  // uint[]: lists of all tiles, ascending within a tile
+#define BINDING_GBUFFER_ALBEDO  8  // sampled
+#define BINDING_GBUFFER_NORMAL  9  // sampled
+#define BINDING_DEPTH           10 // sampled
+#define BINDING_SHADOW_MAP      11 // sampled, comparison
+#define BINDING_HDR             12 // sampled
+#define BINDING_HDR_STORAGE     13 // storage image rgba16f
+#define BINDING_LDR             14 // sampled (for the upscaling blit)
+#define BINDING_OVERLAY         15 // sampled: font and UI atlas
+// --- Set 1: one group a material. ---
+#define BINDING_ALBEDO_TEXTURE   0
+#define BINDING_NORMAL_TEXTURE   1
+#define BINDING_EMISSIVE_TEXTURE 2
+
+// --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
+// as on, on the software driver). ---
+#define SPEC_BRDF_MASK     0 // bit Brdf: specular lobes that the level uses; bit 4: Oren-Nayar; bit 5: Fresnel
+#define SPEC_ATTENUATION   1 // Attenuation
+#define SPEC_SHADOW        2 // 1: directional 0 has a shadow map
+#define SPEC_ALPHA_MASK    3 // geometry: discard under the cutoff
+#define SPEC_SPOTS         4 // 1: there are spot lights
+#define SPEC_DEBUG_VIEW    5 // DebugView of the debug pass
+#define SPEC_SUBGROUP_CULL 6 // tiled: per-subgroup culling of the tile's list
+
+#define BRDF_MASK_OREN_NAYAR 16
+#define BRDF_MASK_FRESNEL    32
+
+// Tile side in pixels of the light grid (edge tiles are cut by the screen).
+#define TILE_SIZE_PX 16
+// Survivors a subgroup keeps before it shades them (chunked: any number of lights works).
+#define SUBGROUP_LIST_CAP 256
+#define MATERIALS_CAP     256
+#define DIRECTIONALS_CAP  8
+#define GEOMETRY_PUSH_SIZE 16
+
+SHARED_STRUCT(FrameRecord) {
+    mat4 view_projection; // world to clip, reversed depth, infinite far
+    mat4 view;            // world to view
+    mat4 shadow_matrix;   // world to shadow clip (directional 0)
+    // World position of a pixel = camera + (ray_right * ndc.x + ray_up * ndc.y + ray_forward)
+    // * near / depth: no inverse matrix per pixel. ndc.y points up.
+    vec4 camera;          // xyz world, w near
+    vec4 ray_right;       // camera right * tan(fov_x / 2)
+    vec4 ray_up;          // camera up * tan(fov_y / 2)
+    vec4 ray_forward;     // unit
+    vec4 viewport;        // width, height in px, 1 / width, 1 / height
+    vec4 ambient;         // radiance times albedo; w exposure
+    vec4 sky_zenith;      // rgb; w stars
+    vec4 sky_horizon;     // rgb; w time in s (for the shader's own sparkle)
+    vec4 attenuation;     // polynomial kc, kl, kq
+    vec4 shadow;          // 1 / size_px, normal offset in m, distance in m, depth bias
+    uvec4 counts;         // points, spots, directionals, tiles per row
+    uvec4 counts2;        // materials, instances, lights of the dummy index, tick
+} SHARED_END(FrameRecord)
+
+SHARED_STRUCT(InstanceRecord) {
+    vec4 world[3];   // rows of the affine world matrix
+    uvec4 ids;       // material index, drawable's entity, 0, 0
+} SHARED_END(InstanceRecord)
+
+SHARED_STRUCT(MaterialRecord) {
+    vec4 albedo;     // linear rgb, w alpha cutoff
+    vec4 specular;   // linear rgb, w power
+    vec4 emissive;   // rgb radiance (0 if it has an emissive texture: drawn by its own pass);
+                     // w: 1 = receives dynamic light
+    vec4 lobes;      // x Brdf, y normalisation of the specular lobe, z Oren-Nayar A, w B (A = 1,
+                     // B = 0 is Lambert)
+    vec4 extra;      // x fresnel 0/1, yzw emissive radiance factor for the textured pass
+} SHARED_END(MaterialRecord)
+
+SHARED_STRUCT(LightRecord) {
+    vec4 position;   // xyz world, w 1 / range^2
+    vec4 color;      // rgb * intensity, w spot: 1 / (cos inner - cos outer)
+} SHARED_END(LightRecord)
+
+SHARED_STRUCT(SpotRecord) {
+    vec4 direction;  // xyz unit, the way it shines; w cos outer
+} SHARED_END(SpotRecord)
+
+SHARED_STRUCT(DirectionalRecord) {
+    vec4 direction;  // xyz unit, towards the light
+    vec4 color;      // rgb * intensity; w 1 = has the shadow map
+} SHARED_END(DirectionalRecord)
+
+SHARED_STRUCT(TileRecord) {
+    uvec4 list;      // offset into light indices, count of points, count of spots, 0
+} SHARED_END(TileRecord)
+
+#endif
