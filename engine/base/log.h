@@ -10,6 +10,7 @@
 extern "C" {
 #endif
 
+// Not LOG_LEVEL_*: those would clash with ids (LEVEL_ERROR).
 typedef enum LogLevel {
     LOG_SEVERITY_DEBUG,
     LOG_SEVERITY_INFO,
@@ -63,8 +64,8 @@ typedef enum LogId {
 #define LOG(id, ...) log_write(LOG_##id, __FILE__, __LINE__, __VA_ARGS__)
 void log_write(LogId id, const char *file, int line, const char *format, ...) PRINTF_LIKE(4, 5);
 
-// Messages below this level are counted and not printed. Default info; LUZ_LOG=debug|info|
-// warning|error|none in the environment overrides it.
+// Messages below this level are counted and not printed. Default info, or what the environment
+// says: LUZ_LOG=debug|info|warning|error|none.
 void log_set_level(LogLevel level);
 // Messages seen with this id since start or the last log_reset_counts.
 u32 log_count(LogId id);
@@ -72,7 +73,8 @@ void log_reset_counts(void);
 const char *log_id_name(LogId id);
 // Text of the newest message of level error ("" if none), copied into out.
 void log_last_error(char *out, u64 out_cap);
-// An observer beside stderr (the debug panel, a test); NULL removes it.
+// An observer beside stderr (the debug panel, a test); NULL removes it. Called under the log's
+// lock, from the thread that logs; what it logs itself is printed, not observed.
 typedef void (*LogSink)(LogId id, LogLevel level, const char *text, void *user);
 void log_set_sink(LogSink sink, void *user);
 
