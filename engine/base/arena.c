@@ -128,6 +128,7 @@ char *arena_copy_string(Arena *arena, const char *text) {
 }
 
 char *arena_format(Arena *arena, const char *format, ...) {
+    LUZ_ASSERT(format); // also tells GCC, whose sanitizer builds fear a NULL here
     va_list args, again;
     va_start(args, format);
     va_copy(again, args);

@@ -63,7 +63,8 @@ typedef struct ComponentDesc {
     bool singleton;  // at most one row; level text writes it as a top-level [name]
 } ComponentDesc;
 
-#define ROW_NONE UINT32_MAX
+#define ROW_NONE          UINT32_MAX
+#define TABLE_COLUMNS_CAP 256 // columns of one component
 
 typedef struct Table {
     const ComponentDesc *desc;
@@ -98,6 +99,10 @@ static inline const void *table_column(const Table *table, u32 column) {
     return ((void *const *)(table + 1))[column];
 }
 
+// Made and freed by the world; `clock` is its stamp counter.
+Table *table_create(const ComponentDesc *desc, u32 id, const u32 *clock);
+void table_destroy(Table *table);
+
 // Adds a row with the columns' defaults (all derived columns likewise); if the entity has one
 // already, returns that one unchanged. Column pointers are invalid after a call that grows.
 u32 table_add(Table *table, Entity entity);
@@ -110,7 +115,9 @@ static inline u32 table_row(const Table *table, Entity entity) {
     u32 row = table->row_of[index];
     return row != ROW_NONE && table->entity[row] == entity ? row : ROW_NONE;
 }
-// Says that a row's data changed: everything derived from it follows by comparing stamps.
+// Says that a row's data changed: everything derived from it follows by comparing stamps. Not from
+// jobs (newest_stamp is shared): there a job sets stamp[row] = *clock of its own rows, and the
+// caller sets newest_stamp after the loop.
 static inline void table_touch(Table *table, u32 row) {
     table->stamp[row] = table->newest_stamp = *table->clock;
 }
@@ -119,8 +126,8 @@ static inline bool table_changed_since(const Table *table, u32 stamp) {
     return table->newest_stamp >= stamp;
 }
 void table_reserve(Table *table, u32 row_cap);
-// Sanity check of the sparse set (both maps agree, padding is zero); asserts. Debug builds run
-// it after each mutation.
+// Sanity check of the sparse set (both maps agree, padding is zero); asserts. Debug builds
+// (LUZ_POISON) run it after each mutation of a small table and now and then on a large one.
 void table_check(const Table *table);
 // Column index by name, or -1.
 i32 table_find_column(const Table *table, const char *name);

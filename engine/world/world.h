@@ -12,6 +12,11 @@ extern "C" {
 #endif
 
 #define WORLD_COMPONENTS_CAP 64
+#define WORLD_POINTS_CAP     (1u << 26) // points of all lists
+#define WORLD_NAMES_CAP      (1u << 28) // bytes of all names
+
+// Handles have 12 bits of generation; a slot that has used them all stays dead.
+#define GENERATION_RETIRED (1u << (32 - ENTITY_INDEX_BITS))
 
 typedef struct World {
     u64 seed;
@@ -21,7 +26,9 @@ typedef struct World {
     u32 stamp;
     u32 component_count;
     Table *tables[WORLD_COMPONENTS_CAP]; // by component id
-    // Entities. generation[index]: of the living or next entity in the slot; alive[index].
+    // Entities. generation[index]: of the living or next entity in the slot, from 1, or
+    // GENERATION_RETIRED; alive[index]. Slot 0 is never handed out. entity_slots counts the slots
+    // ever used, slot 0 included.
     u32 entity_slots, entity_slots_cap, entities_alive;
     u16 *generation;
     u8 *alive;
@@ -31,7 +38,8 @@ typedef struct World {
     u32 *name_of;
     char *name_text;
     u32 name_text_size, name_text_cap;
-    // Point lists: list id -> [point_first[id], point_first[id + 1]) of xyz triples in points.
+    // Point lists: list id -> [point_first[id], point_first[id + 1]) of xyz triples in points;
+    // list 0 is empty and counted. Lists are never removed.
     u32 *point_first;
     u32 point_list_count, point_list_cap;
     f32 *points;
@@ -59,9 +67,11 @@ void world_set_name(World *world, Entity entity, const char *name);
 const char *world_name(const World *world, Entity entity); // "" if none
 Entity world_find(const World *world, const char *name);   // linear; ENTITY_NONE if absent
 
-// Copies point_count xyz triples; returns the list's id (never 0).
+// Copies point_count xyz triples; returns the list's id: never 0, except at WORLD_POINTS_CAP
+// points or lists (LOG WORLD_LIMIT).
 u32 world_add_points(World *world, const f32 *xyz, u32 point_count);
-// Count of points; *out is NULL for id 0.
+// Count of points; 0 and *out = NULL for id 0 and unknown ids. The pointer is invalid after the
+// next world_add_points.
 u32 world_points(const World *world, u32 list, const f32 **out);
 
 static inline u32 world_advance_stamp(World *world) { return ++world->stamp; }
@@ -77,9 +87,12 @@ u64 table_hash(const Table *table);
 u64 column_hash(const Table *table, u32 column);
 
 // The whole world as one block (versioned, checksummed, with column names), allocated in the
-// arena; and back into a world in which the same components are registered. A damaged or foreign
-// block gives LOG WORLD_LOAD and false and leaves the world as it was. Unknown columns are
-// dropped, missing ones get defaults.
+// arena (too small: LOG WORLD_LIMIT and {NULL, 0}); and back into a world in which the same
+// components are registered. A damaged or foreign block gives LOG WORLD_LOAD and false and leaves
+// the world as it was. Unknown components and columns are dropped (LOG NOTE), missing ones get
+// defaults. After a load every row counts as changed (stamp). Values are checked as far as the
+// world's own sanity needs it: BOOL, ENUM and POINTS are in range; floats may be anything, ENTITY
+// columns may be stale (table_row takes them), TEXTURE ids are the asset store's to check.
 Bytes world_save(const World *world, Arena *arena);
 bool world_load(World *world, Bytes saved);
 
