@@ -13,6 +13,7 @@
 extern "C" {
 #endif
 
+typedef struct Session Session;
 typedef struct SystemPlacement { System system; const char *before; } SystemPlacement;
 typedef struct SessionDesc {
     const ComponentDesc *const *components; // the game's, registered after the engine's
@@ -22,10 +23,10 @@ typedef struct SessionDesc {
     void *user;                             // SystemContext.user
     u32 texture_side_cap;                   // 0 = ASSET_TEXTURE_SIDE_CAP
     // Called when a level has been loaded or reloaded (world filled, tick 0, derived columns set).
-    void (*on_load)(struct Session *session, void *user);
+    void (*on_load)(Session *session, void *user);
 } SessionDesc;
 
-typedef struct Session {
+struct Session {
     SessionDesc desc;
     Arena frame, scratch;    // frame: reset by session_packet's caller (session_frame_begin)
     Arena level_arena[2];    // the level in use and the one being loaded
@@ -39,11 +40,14 @@ typedef struct Session {
     LevelInfo level;
     Diagnostics *diagnostics; // of the newest load; LevelInfo and this live in level_arena
     u64 *file_stamps;         // of level.files, for hot reload
-    Entity player;            // has a walker: entity "spawn", else a new one at camera "main"
+    const u64 *stamps_before_load; // private: the same, taken just before a reload
+    // Has a walker: entity "spawn", else a new one at camera "main", else at the first camera, else
+    // where it sees the whole level (flying).
+    Entity player;
     u32 packet_stamp;         // world stamp of the last packet
     PacketBuildTimes packet_times;
     f32 tick_ms;
-} Session;
+};
 
 bool session_create(Session *session, const SessionDesc *desc);
 void session_destroy(Session *session);
