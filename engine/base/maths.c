@@ -48,10 +48,12 @@ static inline f64 round_f64(f64 x) {
     return (x + magic) - magic;
 }
 
+#define FLT_ROUND_UP 0x1.ffffffp127 // half an ulp above FLT_MAX: a tie, and ties go to even
+
 // f64 to f32 where the value may be out of range, which a plain cast leaves undefined in C.
 static inline f32 narrow(f64 x) {
-    if (x > FLT_MAX) return x > FLT_MAX * (1.0 + 0x1p-25) ? INFINITY : FLT_MAX;
-    if (x < -FLT_MAX) return x < -FLT_MAX * (1.0 + 0x1p-25) ? -INFINITY : -FLT_MAX;
+    if (x > FLT_MAX) return x >= FLT_ROUND_UP ? INFINITY : FLT_MAX;
+    if (x < -FLT_MAX) return x <= -FLT_ROUND_UP ? -INFINITY : -FLT_MAX;
     return (f32)x;
 }
 

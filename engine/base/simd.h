@@ -18,7 +18,8 @@ typedef i32 i32x8 __attribute__((vector_size(32), aligned(32), may_alias));
 #define SIMD_CLONES
 #endif
 
-static inline f32x8 f32x8_set(f32 x) { return (f32x8){x, x, x, x, x, x, x, x}; }
+// A macro: a function that returns a vector would have another ABI in each clone.
+#define f32x8_set(x) ((f32)(x) - (f32x8){0})
 // One bit a lane, from a comparison result (all ones or zero in each lane).
 static inline u32 i32x8_mask(i32x8 v) {
     u32 bits = 0;
