@@ -42,11 +42,14 @@ typedef struct MeshVertex {
 #define BINDING_HDR             12 // sampled
 #define BINDING_HDR_STORAGE     13 // storage image rgba16f
 #define BINDING_LDR             14 // sampled (for the upscaling blit)
-#define BINDING_OVERLAY         15 // sampled: font and UI atlas
+#define BINDING_ACCUMULATION    15 // sampled: deferred's full-precision light sum
+#define BINDING_OVERLAY         16 // sampled: font and UI atlas
+#define BINDING_FRAME_COUNT     17
 // --- Set 1: one group a material. ---
 #define BINDING_ALBEDO_TEXTURE   0
 #define BINDING_NORMAL_TEXTURE   1
 #define BINDING_EMISSIVE_TEXTURE 2
+#define BINDING_MATERIAL_COUNT   3
 
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---
@@ -57,6 +60,9 @@ typedef struct MeshVertex {
 #define SPEC_SPOTS         4 // 1: there are spot lights
 #define SPEC_DEBUG_VIEW    5 // DebugView of the debug pass
 #define SPEC_SUBGROUP_CULL 6 // tiled: per-subgroup culling of the tile's list
+#define SPEC_TILE_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
+#define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
+#define SPEC_COUNT         9
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32

@@ -1,0 +1,151 @@
+// pipelines.c: one row a kind of pipeline, and the cache of those that were made.
+//
+// Data in: kind, packet (its specialisation: which BRDFs, attenuation, switches). Data out:
+// pipeline handles. Called by passes.c and warm_up.c. A pipeline is specialised for what the level
+// uses, because a feature that is off behind a uniform costs as much as on (software driver).
+#include "render_internal.h"
+#include "../base/log.h"
+#include <string.h>
+
+const GpuFormat resource_formats[RESOURCE_COUNT] = {
+#define X(id, label, format) format,
+    RENDER_RESOURCES(X)
+#undef X
+};
+
+// Which specialisation constants matter to a kind; the others are zeroed in the key, so that two
+// settings share a pipeline that does not depend on them.
+#define SPEC_BIT(id) (1u << (id))
+#define SPEC_LIGHTING \
+    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) | SPEC_BIT(SPEC_SPOTS))
+
+typedef struct PipelineRow {
+    const char *label, *vertex, *fragment, *compute;
+    RenderResource targets[2];
+    u32 target_count;
+    bool to_swapchain;
+    bool has_depth, is_shadow;
+    GpuDepth depth;
+    GpuCull cull;
+    GpuBlend blend;
+    GpuVertexLayout vertex_layout;
+    u32 spec_mask;
+    u32 push_size;
+} PipelineRow;
+
+static const PipelineRow rows[PIPELINE_COUNT] = {
+    [PIPELINE_SHADOW] = {.label = "shadow", .vertex = "shadow.vert", .is_shadow = true,
+        .has_depth = true, .depth = GPU_DEPTH_WRITE, .vertex_layout = GPU_VERTEX_MESH},
+    [PIPELINE_SHADOW_MASK] = {.label = "shadow mask", .vertex = "shadow_mask.vert",
+        .fragment = "shadow_mask.frag", .is_shadow = true, .has_depth = true,
+        .depth = GPU_DEPTH_WRITE, .cull = GPU_CULL_NONE, .vertex_layout = GPU_VERTEX_MESH},
+    [PIPELINE_GBUFFER] = {.label = "gbuffer", .vertex = "geometry.vert", .fragment = "gbuffer.frag",
+        .targets = {RESOURCE_GBUFFER_ALBEDO, RESOURCE_GBUFFER_NORMAL}, .target_count = 2,
+        .has_depth = true, .depth = GPU_DEPTH_WRITE, .vertex_layout = GPU_VERTEX_MESH,
+        .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK)},
+    [PIPELINE_FORWARD] = {.label = "forward", .vertex = "forward.vert", .fragment = "forward.frag",
+        .targets = {RESOURCE_HDR}, .target_count = 1, .has_depth = true,
+        .depth = GPU_DEPTH_WRITE, .vertex_layout = GPU_VERTEX_MESH,
+        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_ALPHA_MASK)},
+    [PIPELINE_FORWARD_BLEND] = {.label = "forward blend", .vertex = "forward.vert",
+        .fragment = "forward.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
+        .has_depth = true, .depth = GPU_DEPTH_TEST, .blend = GPU_BLEND_ALPHA,
+        .vertex_layout = GPU_VERTEX_MESH, .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TILE_LISTS)},
+    [PIPELINE_DEFERRED_BASE] = {.label = "deferred base", .vertex = "fullscreen.vert",
+        .fragment = "deferred_base.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
+        .cull = GPU_CULL_NONE, .spec_mask = SPEC_LIGHTING},
+    [PIPELINE_DEFERRED_LIGHT] = {.label = "deferred light", .vertex = "deferred_light.vert",
+        .fragment = "deferred_light.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
+        .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .spec_mask = SPEC_LIGHTING},
+    [PIPELINE_DEFERRED_RESOLVE] = {.label = "deferred resolve", .vertex = "fullscreen.vert",
+        .fragment = "deferred_resolve.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
+        .cull = GPU_CULL_NONE},
+    [PIPELINE_TILED] = {.label = "tiled", .compute = "tiled.comp",
+        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_SUBGROUP_CULL)},
+    [PIPELINE_SKY] = {.label = "sky", .vertex = "fullscreen.vert", .fragment = "sky.frag",
+        .targets = {RESOURCE_HDR}, .target_count = 1, .has_depth = true, .depth = GPU_DEPTH_TEST,
+        .cull = GPU_CULL_NONE},
+    [PIPELINE_EMISSIVE] = {.label = "emissive", .vertex = "geometry.vert",
+        .fragment = "emissive.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
+        .has_depth = true, .depth = GPU_DEPTH_TEST, .blend = GPU_BLEND_ADD,
+        .vertex_layout = GPU_VERTEX_MESH, .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK)},
+    [PIPELINE_TONEMAP] = {.label = "tonemap", .vertex = "fullscreen.vert",
+        .fragment = "tonemap.frag", .targets = {RESOURCE_LDR}, .target_count = 1,
+        .cull = GPU_CULL_NONE, .spec_mask = SPEC_BIT(SPEC_TONEMAP)},
+    [PIPELINE_DEBUG] = {.label = "debug", .vertex = "fullscreen.vert", .fragment = "debug.frag",
+        .targets = {RESOURCE_LDR}, .target_count = 1, .cull = GPU_CULL_NONE,
+        .spec_mask = SPEC_BIT(SPEC_DEBUG_VIEW)},
+    [PIPELINE_TEXT] = {.label = "text", .vertex = "overlay.vert", .fragment = "overlay.frag",
+        .targets = {RESOURCE_LDR}, .target_count = 1, .cull = GPU_CULL_NONE,
+        .blend = GPU_BLEND_ALPHA, .vertex_layout = GPU_VERTEX_UI},
+    [PIPELINE_PRESENT] = {.label = "present", .vertex = "fullscreen.vert",
+        .fragment = "present.frag", .to_swapchain = true, .cull = GPU_CULL_NONE},
+    [PIPELINE_OVERLAY] = {.label = "overlay", .vertex = "overlay.vert", .fragment = "overlay.frag",
+        .to_swapchain = true, .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ALPHA,
+        .vertex_layout = GPU_VERTEX_UI},
+};
+
+static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
+    const PipelineRow *row = &rows[key->kind];
+    GpuPipelineDesc desc = {
+        .label = row->label,
+        .vertex = row->vertex,
+        .fragment = row->fragment,
+        .compute = row->compute,
+        .layouts = {renderer->frame_layout, renderer->material_layout},
+        .layout_count = 2,
+        .push_size = GEOMETRY_PUSH_SIZE,
+        .spec_count = SPEC_COUNT,
+        .target_count = row->to_swapchain ? 1 : row->target_count,
+        .depth_format = row->has_depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,
+        .depth = row->depth,
+        .cull = key->double_sided ? GPU_CULL_NONE : row->cull,
+        .blend = row->blend,
+        .vertex_layout = row->vertex_layout,
+        .depth_clamp = row->is_shadow,
+    };
+    memcpy(desc.spec, key->spec, sizeof key->spec);
+    for (u32 i = 0; i < row->target_count; i++)
+        desc.targets[i] = resource_formats[row->targets[i]];
+    if (row->to_swapchain) desc.targets[0] = GPU_FORMAT_SWAPCHAIN;
+    renderer->stats.pipelines++;
+    return gpu_create_pipeline(renderer->gpu, &desc);
+}
+
+GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
+                         bool alpha_mask, bool double_sided) {
+    const RenderSettings *settings = &packet->settings;
+    PipelineKey key = {.kind = kind, .double_sided = double_sided};
+    u32 spec[SPEC_COUNT] = {
+        [SPEC_BRDF_MASK] = packet->brdf_mask,
+        [SPEC_ATTENUATION] = packet->attenuation,
+        [SPEC_SHADOW] = packet->shadow_size_px > 0,
+        [SPEC_ALPHA_MASK] = alpha_mask,
+        [SPEC_SPOTS] = packet->spots.count > 0,
+        [SPEC_DEBUG_VIEW] = settings->view,
+        [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,
+        [SPEC_TILE_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
+        [SPEC_TONEMAP] = settings->tonemap,
+    };
+    for (u32 i = 0; i < SPEC_COUNT; i++)
+        key.spec[i] = rows[kind].spec_mask & SPEC_BIT(i) ? spec[i] : 0;
+    for (u32 i = 0; i < renderer->pipeline_count; i++)
+        if (memcmp(&renderer->pipelines[i].key, &key, sizeof key) == 0)
+            return renderer->pipelines[i].pipeline;
+    if (renderer->pipeline_count == PIPELINES_CAP) {
+        // Only reachable by changing levels many times: start over.
+        LOG(DEBUG_NOTE, "pipeline cache full (%u), emptied", PIPELINES_CAP);
+        pipelines_destroy(renderer);
+    }
+    PipelineSlot *slot = &renderer->pipelines[renderer->pipeline_count++];
+    slot->key = key;
+    slot->pipeline = pipeline_create(renderer, &key);
+    return slot->pipeline;
+}
+
+void pipelines_destroy(Renderer *renderer) {
+    for (u32 i = 0; i < renderer->pipeline_count; i++)
+        if (renderer->pipelines[i].pipeline.id)
+            gpu_destroy_pipeline(renderer->gpu, renderer->pipelines[i].pipeline);
+    renderer->pipeline_count = 0;
+}

@@ -1,0 +1,167 @@
+// renderer.c: the renderer's life, one frame, and the image that comes of it.
+//
+// Data in: packet, asset store. Data out: commands of one frame, or pixels. The only state that
+// survives a frame is what was uploaded, the pipelines, and a shadow map whose key says what it
+// shows: the same packet gives the same image whatever was drawn before.
+#include "render_internal.h"
+#include "../base/hash.h"
+#include "../base/log.h"
+#include <stdlib.h>
+#include <string.h>
+
+Renderer *renderer_create(Gpu *gpu) {
+    Renderer *renderer = calloc(1, sizeof *renderer);
+    LUZ_ASSERT(renderer);
+    renderer->gpu = gpu;
+    if (!arena_create(&renderer->arena, "renderer", MIB(256))) {
+        free(renderer);
+        return NULL;
+    }
+    GpuBindLayoutDesc frame = {.label = "frame", .count = BINDING_FRAME_COUNT};
+    for (u32 i = 0; i < BINDING_FRAME_COUNT; i++)
+        frame.kinds[i] = i <= BINDING_LIGHT_INDICES ? GPU_BINDING_STORAGE_BUFFER
+                         : i == BINDING_HDR_STORAGE ? GPU_BINDING_STORAGE_TEXTURE
+                                                    : GPU_BINDING_SAMPLED_TEXTURE;
+    renderer->frame_layout = gpu_create_bind_layout(gpu, &frame);
+    renderer->material_layout = gpu_create_bind_layout(
+        gpu, &(GpuBindLayoutDesc){.label = "material",
+                                  .count = BINDING_MATERIAL_COUNT,
+                                  .kinds = {GPU_BINDING_SAMPLED_TEXTURE,
+                                            GPU_BINDING_SAMPLED_TEXTURE,
+                                            GPU_BINDING_SAMPLED_TEXTURE}});
+    if (!render_assets_create(renderer)) {
+        renderer_destroy(renderer);
+        return NULL;
+    }
+    return renderer;
+}
+
+void renderer_destroy(Renderer *renderer) {
+    if (!renderer) return;
+    gpu_wait_idle(renderer->gpu);
+    pipelines_destroy(renderer);
+    frame_upload_destroy(renderer);
+    overlay_destroy(renderer);
+    render_assets_destroy(renderer);
+    arena_destroy(&renderer->arena);
+    free(renderer);
+}
+
+// The shadow map is bound even when no light casts: it must have a layout that shaders can read.
+static void shadow_map_ready(const PassContext *c) {
+    Renderer *r = c->renderer;
+    if (r->usage[RESOURCE_SHADOW_MAP] != GPU_USAGE_NONE || c->packet->shadow_size_px > 0) return;
+    gpu_cmd_barriers(c->cmd,
+                     &(GpuBarrier){.texture = r->targets[RESOURCE_SHADOW_MAP],
+                                   .from = GPU_USAGE_NONE, .to = GPU_USAGE_SAMPLED_FRAGMENT,
+                                   .discard = true},
+                     1);
+    r->usage[RESOURCE_SHADOW_MAP] = GPU_USAGE_SAMPLED_FRAGMENT;
+}
+
+static const PathRow *path_of(const Packet *packet) {
+    return packet->settings.view != VIEW_FINAL ? &debug_path
+                                               : &path_table[packet->settings.path];
+}
+
+bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,
+                   const Overlay *overlay) {
+    u32 pipelines_before = renderer->stats.pipelines;
+    renderer->stats = (RendererStats){.pipelines = pipelines_before};
+    if (!frame_upload(renderer, packet)) return false;
+    PassContext context = {renderer, cmd, packet, overlay};
+    shadow_map_ready(&context);
+    const PathRow *path = path_of(packet);
+    for (u32 i = 0; i < PATH_PASSES_CAP && path->passes[i]; i++)
+        pass_run(&context, path->passes[i]);
+    if (to_swapchain) pass_run(&context, &present_pass);
+    return true;
+}
+
+bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,
+                           RenderImage *out) {
+    GpuCommands *cmd = gpu_frame_begin(renderer->gpu);
+    if (!cmd) return false;
+    bool drawn = renderer_draw(renderer, cmd, packet, false, NULL);
+    if (drawn && out) {
+        GpuBarrier barrier = {.texture = renderer->targets[RESOURCE_LDR],
+                              .from = renderer->usage[RESOURCE_LDR],
+                              .to = GPU_USAGE_COPY_SOURCE};
+        gpu_cmd_barriers(cmd, &barrier, 1);
+        renderer->usage[RESOURCE_LDR] = GPU_USAGE_COPY_SOURCE;
+        gpu_cmd_copy_texture_to_buffer(cmd, renderer->targets[RESOURCE_LDR], renderer->readback);
+    }
+    // A frame that failed half-way is still submitted: the slot must come free.
+    if (!gpu_frame_end(renderer->gpu, true) || !drawn) return false;
+    if (out) {
+        u64 size = (u64)packet->width_px * packet->height_px * 4;
+        out->width_px = packet->width_px;
+        out->height_px = packet->height_px;
+        out->rgba = ARENA_PUSH(arena, u8, size);
+        memcpy(out->rgba, gpu_buffer_map(renderer->gpu, renderer->readback), size);
+        out->hash = render_image_hash(out->rgba, out->width_px, out->height_px);
+    }
+    return true;
+}
+
+u64 render_image_hash(const u8 *rgba, u32 width_px, u32 height_px) {
+    u32 size[2] = {width_px, height_px};
+    return hash_bytes(rgba, (u64)width_px * height_px * 4, hash_bytes(size, sizeof size, 0));
+}
+
+u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap) {
+    u32 count = 0;
+    for (u32 i = 0; i < PATH_PASSES_CAP && path_table[path].passes[i] && count < out_cap; i++)
+        out[count++] = path_table[path].passes[i]->name;
+    return count;
+}
+
+RendererStats renderer_stats(const Renderer *renderer) { return renderer->stats; }
+
+// --- Warm-up: shaders compile when they first run (up to 150 ms each on the software driver) ---
+
+// Draws a copy of the packet with other settings; the picture is thrown away.
+static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratch,
+                         RenderSettings settings) {
+    u64 mark = arena_mark(scratch);
+    Packet *copy = arena_push(scratch, packet->size, CACHE_LINE);
+    memcpy(copy, packet, packet->size);
+    copy->settings = settings;
+    // Without local lights: thousands would make the slow paths' first frame take seconds, and the
+    // shaders compile just the same.
+    copy->frame.counts[0] = copy->frame.counts[1] = 0;
+    memset(PACKET_WRITE(copy, tiles, TileRecord), 0, copy->tiles.count * sizeof(TileRecord));
+    bool ok = renderer_render_image(renderer, copy, NULL, NULL);
+    arena_rewind(scratch, mark);
+    return ok;
+}
+
+bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress progress,
+                      void *user) {
+    Arena scratch;
+    if (!arena_create(&scratch, "warm-up", MAX(packet->size * 2, MIB(64)))) return false;
+    u32 total = PATH_COUNT + VIEW_COUNT - 1, done = 0;
+    bool ok = true;
+    for (u32 path = 0; path < PATH_COUNT && ok; path++) {
+        RenderSettings settings = packet->settings;
+        settings.path = path;
+        settings.view = VIEW_FINAL;
+        if (progress) progress(user, done, total, path_table[path].name);
+        ok = warm_up_with(renderer, packet, &scratch, settings);
+        done++;
+    }
+    for (u32 view = VIEW_FINAL + 1; view < VIEW_COUNT && ok; view++) {
+        RenderSettings settings = packet->settings;
+        settings.view = view;
+        if (progress) progress(user, done, total, "debug views");
+        ok = warm_up_with(renderer, packet, &scratch, settings);
+        done++;
+    }
+    if (progress) progress(user, total, total, "ready");
+    arena_destroy(&scratch);
+    return ok;
+}
+
+bool renderer_warm_up_path(Renderer *renderer, const Packet *packet) {
+    return renderer_render_image(renderer, packet, NULL, NULL);
+}

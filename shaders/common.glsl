@@ -1,0 +1,53 @@
+// common.glsl: the frame's bindings and the small functions that every shader shares.
+#ifndef COMMON_GLSL
+#define COMMON_GLSL
+#include "shared.h"
+
+layout(std430, set = 0, binding = BINDING_FRAME) readonly buffer FrameBuffer { FrameRecord frame; };
+layout(std430, set = 0, binding = BINDING_INSTANCES) readonly buffer InstanceBuffer {
+    InstanceRecord instances[];
+};
+layout(std430, set = 0, binding = BINDING_MATERIALS) readonly buffer MaterialBuffer {
+    MaterialRecord materials[];
+};
+
+layout(constant_id = SPEC_BRDF_MASK) const uint BRDF_MASK = 8;
+layout(constant_id = SPEC_ATTENUATION) const uint ATTENUATION = 0;
+layout(constant_id = SPEC_SHADOW) const uint SHADOW = 0;
+layout(constant_id = SPEC_ALPHA_MASK) const uint ALPHA_MASK = 0;
+layout(constant_id = SPEC_SPOTS) const uint SPOTS = 1;
+layout(constant_id = SPEC_DEBUG_VIEW) const uint DEBUG_VIEW = 0;
+layout(constant_id = SPEC_SUBGROUP_CULL) const uint SUBGROUP_CULL = 1;
+layout(constant_id = SPEC_TILE_LISTS) const uint TILE_LISTS = 0;
+layout(constant_id = SPEC_TONEMAP) const uint TONEMAP = 1;
+
+const float PI = 3.14159265358979;
+
+// Octahedral coding of unit vectors (Cigolle et al. 2014), components in [-1, 1].
+vec2 oct_encode(vec3 n) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return n.z < 0.0 ? folded : p;
+}
+vec3 oct_decode(vec2 e) {
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float t = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -t : t;
+    n.y += n.y >= 0.0 ? -t : t;
+    return normalize(n);
+}
+
+// World position of a pixel from its depth, see FrameRecord.
+vec3 position_from_depth(vec2 pixel_center, float depth) {
+    vec2 ndc = vec2(pixel_center.x * frame.viewport.z * 2.0 - 1.0,
+                    1.0 - pixel_center.y * frame.viewport.w * 2.0);
+    vec3 ray = frame.ray_right.xyz * ndc.x + frame.ray_up.xyz * ndc.y + frame.ray_forward.xyz;
+    return frame.camera.xyz + ray * (frame.camera.w / max(depth, 1e-9));
+}
+
+// Exact piecewise sRGB curve (IEC 61966-2-1).
+vec3 srgb_encode(vec3 c) {
+    return mix(1.055 * pow(max(c, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c,
+               lessThanEqual(c, vec3(0.0031308)));
+}
+#endif
