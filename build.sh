@@ -199,11 +199,16 @@ configure() {
 }
 
 build() {
+    # Two builds of one variant at a time would write the same files.
+    mkdir -p "build/$VARIANT"
+    exec 9>"build/$VARIANT/lock"
+    if command -v flock >/dev/null 2>&1; then flock 9; fi
     configure
     ninja -f "build/$VARIANT/build.ninja" --quiet >&2 || {
         # ccache or an interrupted run can leave nothing usable; the message above says what failed.
         die "the build failed"
     }
+    exec 9>&-
 }
 
 # Sanitizer variants: the driver's own threads and leaks are not ours.

@@ -1,0 +1,143 @@
+// paths.c: every path gives the same picture, the same bits each time, and nothing is black.
+#include "studio.h"
+#include "../../engine/capture/image_compare.h"
+#include "../../engine/base/log.h"
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+
+// Small: path `forward` costs fragments x lights, and one level has 4,096 of them.
+#define WIDTH  256
+#define HEIGHT 144
+
+static void compare_paths(const char *level) {
+    Studio studio;
+    studio_open(&studio, level);
+    session_advance(&studio.session, 90);
+    RenderImage images[PATH_COUNT];
+    for (u32 path = 0; path < PATH_COUNT; path++) {
+        RenderSettings settings = settings_default();
+        settings.path = path;
+        images[path] = studio_draw(&studio, "main", &settings, WIDTH, HEIGHT);
+        // Without culling by subgroups and in another order of paths: the same bits.
+        if (path == PATH_TILED_DEFERRED) {
+            settings.subgroup_cull = 0;
+            RenderImage plain = studio_draw(&studio, "main", &settings, WIDTH, HEIGHT);
+            assert_true(plain.hash == images[path].hash);
+            settings.subgroup_cull = 1;
+        }
+        RenderImage again = studio_draw(&studio, "main", &settings, WIDTH, HEIGHT);
+        assert_true(again.hash == images[path].hash);
+    }
+    for (u32 path = 1; path < PATH_COUNT; path++) {
+        ImageDifference d = image_compare(images[PATH_FORWARD].rgba, images[path].rgba, WIDTH,
+                                          HEIGHT, &studio.images);
+        char word[64];
+        printf("    %s forward against %s: max %u at %u,%u, mean %.4f\n", level,
+               settings_word("path", path, word, sizeof word), d.max, d.max_x, d.max_y, d.mean);
+        assert_in_range(d.max, 0, 2);
+    }
+    // A picture has light and dark: black frames and constant ones are failures.
+    u64 sum = 0, squares = 0, count = (u64)WIDTH * HEIGHT;
+    for (u64 i = 0; i < count; i++) {
+        u64 green = images[PATH_TILED_DEFERRED].rgba[i * 4 + 1];
+        sum += green;
+        squares += green * green;
+    }
+    f64 mean = (f64)sum / (f64)count, variance = (f64)squares / (f64)count - mean * mean;
+    assert_true(mean > 5.0);
+    assert_true(variance > 25.0);
+    studio_close(&studio);
+}
+
+TEST_GPU(golden, paths_agree_cloister) { compare_paths("data/levels/cloister.toml"); }
+TEST_GPU(golden, paths_agree_cornell) { compare_paths("data/levels/cornell.toml"); }
+TEST_GPU(golden, paths_agree_cornell_empty) { compare_paths("data/levels/cornell_empty.toml"); }
+TEST_GPU(golden, paths_agree_light_box) { compare_paths("data/levels/light_box.toml"); }
+TEST_GPU(golden, paths_agree_lights_4096) { compare_paths("data/levels/lights_4096.toml"); }
+TEST_GPU(golden, paths_agree_plane_test) { compare_paths("data/levels/plane_test.toml"); }
+
+TEST(golden, every_level_is_in_the_list) {
+    DIR *directory = opendir("data/levels");
+    assert_non_null(directory);
+    u32 count = 0;
+    for (struct dirent *entry; (entry = readdir(directory));) {
+        if (!strstr(entry->d_name, ".toml")) continue;
+        char path[512];
+        snprintf(path, sizeof path, "data/levels/%s", entry->d_name);
+        bool found = false;
+        for (u32 i = 0; i < studio_level_count; i++) found |= strcmp(path, studio_levels[i]) == 0;
+        if (!found) fail_msg("%s is in no picture test", path);
+        count++;
+    }
+    closedir(directory);
+    assert_int_equal(count, studio_level_count);
+}
+
+// Each attenuation and each switch draws without a message of the validation layer, in all paths.
+TEST_GPU(golden, settings_in_all_paths) {
+    Studio studio;
+    studio_open(&studio, "data/levels/plane_test.toml");
+    static const char *const variants[] = {"shadows=off",  "tonemap=off",       "light_culling=off",
+                                           "mesh_culling=off", "light_gain=0", "exposure=2"};
+    for (u32 v = 0; v < COUNT_OF(variants); v++)
+        for (u32 path = 0; path < PATH_COUNT; path++) {
+            RenderSettings settings = settings_default();
+            assert_true(settings_set(&settings, variants[v]));
+            settings.path = path;
+            studio_draw(&studio, "main", &settings, 96, 54);
+        }
+    EnvironmentTable *environment =
+        WORLD_TABLE(studio.session.world, Environment, environment);
+    u32 row = world_singleton(studio.session.world, COMPONENT_environment);
+    for (u32 attenuation = 0; attenuation < 3; attenuation++) {
+        environment->attenuation[row] = attenuation;
+        RenderImage images[PATH_COUNT];
+        for (u32 path = 0; path < PATH_COUNT; path++) {
+            RenderSettings settings = settings_default();
+            settings.path = path;
+            images[path] = studio_draw(&studio, "main", &settings, 160, 90);
+            ImageDifference d =
+                image_compare(images[0].rgba, images[path].rgba, 160, 90, &studio.images);
+            assert_in_range(d.max, 0, 2);
+        }
+    }
+    studio_close(&studio);
+}
+
+TEST_GPU(golden, debug_views_differ) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    u64 hashes[VIEW_COUNT];
+    for (u32 view = 0; view < VIEW_COUNT; view++) {
+        RenderSettings settings = settings_default();
+        settings.view = view;
+        hashes[view] = studio_draw(&studio, "main", &settings, 160, 90).hash;
+        for (u32 other = 0; other < view; other++) assert_true(hashes[other] != hashes[view]);
+    }
+    studio_close(&studio);
+}
+
+// Odd sizes cut tiles and groups; sizes change while running; the warm-up leaves no trace.
+TEST_GPU(golden, sizes_and_warm_up) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    RenderSettings settings = settings_default();
+    RenderImage first = studio_draw(&studio, "main", &settings, 161, 91);
+    static const u32 sizes[][2] = {{1, 1}, {7, 5}, {16, 16}, {17, 33}, {640, 360}, {64, 360}};
+    for (u32 i = 0; i < COUNT_OF(sizes); i++)
+        for (u32 path = 0; path < PATH_COUNT; path++) {
+            settings.path = path;
+            studio_draw(&studio, "main", &settings, sizes[i][0], sizes[i][1]);
+        }
+    settings = settings_default();
+    const Packet *packet = session_packet(
+        &studio.session, &(SessionView){.camera = "main", .settings = settings, .width_px = 161,
+                                        .height_px = 91});
+    assert_true(renderer_warm_up(studio.renderer, packet, NULL, NULL));
+    u32 pipelines = renderer_stats(studio.renderer).pipelines;
+    RenderImage last = studio_draw(&studio, "main", &settings, 161, 91);
+    assert_true(first.hash == last.hash);
+    assert_int_equal(renderer_stats(studio.renderer).pipelines, pipelines);
+    studio_close(&studio);
+}
