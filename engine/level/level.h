@@ -16,6 +16,9 @@ extern "C" {
 #define LEVEL_ENTITIES_MAX     200000 // after repetition
 #define LEVEL_MATERIALS_MAX    256    // material palette of a level (8 bits in the G-buffer)
 #define LEVEL_DIAGNOSTICS_MAX  1000   // more are counted, not stored
+#define LEVEL_NAME_MAX         127    // bytes of a name
+#define LEVEL_POINTS_MAX       65536  // of one list of points
+#define LEVEL_PREFAB_DEPTH_MAX 32     // prefabs within prefabs
 
 typedef struct Diagnostic {
     bool is_error;      // else a warning
@@ -23,7 +26,8 @@ typedef struct Diagnostic {
     u32 line, column;   // 1-based; column counts bytes
     const char *text;   // "unknown key 'intensty'"
     const char *hint;   // "did you mean 'intensity'?" or ""
-    const char *source; // the line's text
+    const char *source; // the line's text; of a very long line the part around the place
+    u32 caret;          // 0-based byte in source where the marked text begins
     u32 length;         // of the marked text, at least 1
 } Diagnostic;
 
