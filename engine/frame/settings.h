@@ -38,7 +38,7 @@ typedef enum DebugView {
     S(BOOL, tonemap, 1, 0, 1, "", "Reinhard; off = clamp")                                         \
     S(F32, exposure, 1.0f, 0.0f, 1000.0f, "", "factor on the level's exposure")                    \
     S(F32, light_gain, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")           \
-    S(U32, light_limit, 0, 0, 1000000, "", "only the first N lights of the level; 0 = all")
+    S(U32, light_limit, 0, 0, 1000000, "", "only the first N point and spot lights; 0 = all")
 
 #define SETTING_FIELD_F32(name) f32 name;
 #define SETTING_FIELD_BOOL(name) u32 name;

@@ -1,0 +1,215 @@
+// settings.c: the table of render settings and its text form.
+// Data in: "key=value" texts from the command line, the panel and captures.
+// Data out: a RenderSettings whose every value is in range. Called by: shells, tools, packet_build
+// and packet_validate; any thread (no state). Does not: act on a setting; that is the renderer's.
+#include "settings.h"
+#include "../base/log.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const SettingDesc render_setting_descs[] = {
+#define S(type, name, initial, min, max, words, help) \
+    {#name, words, help, SETTING_##type, initial, min, max, offsetof(RenderSettings, name)},
+    RENDER_SETTINGS(S)
+#undef S
+};
+const u32 render_setting_count = COUNT_OF(render_setting_descs);
+
+#define NAME_CAP 64 // longest key or word that is compared
+
+// One setting's bits: f32 or u32 by type.
+static void setting_write(RenderSettings *settings, const SettingDesc *desc, f64 value) {
+    u8 *field = (u8 *)settings + desc->offset;
+    if (desc->type == SETTING_F32) {
+        f32 number = (f32)value;
+        memcpy(field, &number, sizeof number);
+    } else {
+        u32 number = (u32)value;
+        memcpy(field, &number, sizeof number);
+    }
+}
+
+static f64 setting_read(const RenderSettings *settings, const SettingDesc *desc) {
+    const u8 *field = (const u8 *)settings + desc->offset;
+    if (desc->type == SETTING_F32) {
+        f32 number;
+        memcpy(&number, field, sizeof number);
+        return number;
+    }
+    u32 number;
+    memcpy(&number, field, sizeof number);
+    return number;
+}
+
+RenderSettings settings_default(void) {
+    RenderSettings settings = {0};
+    for (u32 i = 0; i < render_setting_count; i++)
+        setting_write(&settings, &render_setting_descs[i], render_setting_descs[i].initial);
+    return settings;
+}
+
+void settings_clamp(RenderSettings *settings) {
+    for (u32 i = 0; i < render_setting_count; i++) {
+        const SettingDesc *desc = &render_setting_descs[i];
+        f64 value = setting_read(settings, desc);
+        if (!(value == value)) value = desc->initial; // NaN
+        setting_write(settings, desc, CLAMP(value, desc->min, desc->max));
+    }
+}
+
+// ---- words and suggestions ----
+
+// The next of the words separated by blanks; returns its length (0 = no more).
+static u32 next_word(const char **cursor, const char **word) {
+    const char *text = *cursor;
+    while (*text == ' ') text++;
+    *word = text;
+    while (*text && *text != ' ') text++;
+    *cursor = text;
+    return (u32)(text - *word);
+}
+
+// Number of single-character edits between two texts, a swap of neighbours counting as one
+// (optimal string alignment distance, Damerau 1964). Longer than NAME_CAP counts as far away.
+static u32 edit_distance(const char *a, u32 a_length, const char *b, u32 b_length) {
+    if (a_length >= NAME_CAP || b_length >= NAME_CAP) return UINT32_MAX;
+    u32 rows[3][NAME_CAP + 1];
+    for (u32 j = 0; j <= b_length; j++) rows[0][j] = j;
+    for (u32 i = 1; i <= a_length; i++) {
+        u32 *row = rows[i % 3], *above = rows[(i - 1) % 3], *two_above = rows[(i + 1) % 3];
+        row[0] = i;
+        for (u32 j = 1; j <= b_length; j++) {
+            u32 best = above[j - 1] + (a[i - 1] != b[j - 1]);
+            best = MIN(best, above[j] + 1);
+            best = MIN(best, row[j - 1] + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                best = MIN(best, two_above[j - 2] + 1);
+            row[j] = best;
+        }
+    }
+    return rows[a_length % 3][b_length];
+}
+
+// Keeps the nearest candidate; a third of the letters may be wrong before it is no help.
+typedef struct Suggestion {
+    char name[NAME_CAP];
+    u32 distance;
+} Suggestion;
+
+static void suggestion_offer(Suggestion *best, const char *typed, u32 typed_length,
+                             const char *name, u32 name_length) {
+    if (name_length >= NAME_CAP) return;
+    u32 distance = edit_distance(typed, typed_length, name, name_length);
+    if (distance >= best->distance || distance > MAX(typed_length, name_length) / 3 + 1) return;
+    memcpy(best->name, name, name_length);
+    best->name[name_length] = 0;
+    best->distance = distance;
+}
+
+// ---- text to value ----
+
+static bool parse_enum(const SettingDesc *desc, const char *text, f64 *value) {
+    Suggestion best = {.distance = UINT32_MAX};
+    const char *cursor = desc->words, *word;
+    u32 length, text_length = (u32)strnlen(text, NAME_CAP);
+    for (u32 index = 0; (length = next_word(&cursor, &word)) > 0; index++) {
+        if (length == text_length && memcmp(word, text, length) == 0) {
+            *value = index;
+            return true;
+        }
+        suggestion_offer(&best, text, text_length, word, length);
+    }
+    if (best.distance != UINT32_MAX)
+        LOG(RENDER_SETTING, "setting '%s' has no value '%.64s'; did you mean '%s'?", desc->name,
+            text, best.name);
+    else
+        LOG(RENDER_SETTING, "setting '%s' has no value '%.64s'; it can be: %s", desc->name, text,
+            desc->words);
+    return false;
+}
+
+static bool parse_bool(const SettingDesc *desc, const char *text, f64 *value) {
+    static const char *const words[] = {"false", "true", "off", "on", "0", "1", "no", "yes"};
+    for (u32 i = 0; i < COUNT_OF(words); i++) {
+        if (strcmp(text, words[i]) != 0) continue;
+        *value = i & 1;
+        return true;
+    }
+    LOG(RENDER_SETTING, "setting '%s' is true or false, not '%.64s'", desc->name, text);
+    return false;
+}
+
+static bool parse_number(const SettingDesc *desc, const char *text, f64 *value) {
+    char *end;
+    f64 number = strtod(text, &end);
+    bool whole = desc->type != SETTING_U32 || (number == floor(number));
+    // strtod also takes blanks in front, hexadecimal, "nan" and "inf": the first character and the
+    // range check leave only what a person means by a number.
+    bool starts = (*text >= '0' && *text <= '9') || *text == '.' || *text == '-' || *text == '+';
+    if (!starts || end == text || *end || !whole) {
+        LOG(RENDER_SETTING, "setting '%s' needs %s number, not '%.64s'", desc->name,
+            desc->type == SETTING_U32 ? "a whole" : "a", text);
+        return false;
+    }
+    if (!(number >= desc->min && number <= desc->max)) {
+        LOG(RENDER_SETTING, "setting '%s' goes from %g to %g, not '%.64s'", desc->name, desc->min,
+            desc->max, text);
+        return false;
+    }
+    *value = number;
+    return true;
+}
+
+static const SettingDesc *find_setting(const char *key, u32 key_length) {
+    Suggestion best = {.distance = UINT32_MAX};
+    for (u32 i = 0; i < render_setting_count; i++) {
+        const char *name = render_setting_descs[i].name;
+        u32 length = (u32)strlen(name);
+        if (length == key_length && memcmp(name, key, length) == 0) return &render_setting_descs[i];
+        suggestion_offer(&best, key, key_length, name, length);
+    }
+    int shown = (int)MIN(key_length, NAME_CAP);
+    if (best.distance != UINT32_MAX)
+        LOG(RENDER_SETTING, "unknown setting '%.*s'; did you mean '%s'?", shown, key, best.name);
+    else
+        LOG(RENDER_SETTING, "unknown setting '%.*s'", shown, key);
+    return NULL;
+}
+
+bool settings_set(RenderSettings *settings, const char *key_equals_value) {
+    const char *equals = strchr(key_equals_value, '=');
+    if (!equals) {
+        LOG(RENDER_SETTING, "'%.64s' is not of the form key=value", key_equals_value);
+        return false;
+    }
+    u64 key_length = (u64)(equals - key_equals_value);
+    const SettingDesc *desc = find_setting(key_equals_value, (u32)MIN(key_length, UINT32_MAX));
+    if (!desc) return false;
+    const char *text = equals + 1;
+    f64 value = 0;
+    bool known = false;
+    switch (desc->type) {
+    case SETTING_ENUM: known = parse_enum(desc, text, &value); break;
+    case SETTING_BOOL: known = parse_bool(desc, text, &value); break;
+    case SETTING_F32:
+    case SETTING_U32: known = parse_number(desc, text, &value); break;
+    }
+    if (known) setting_write(settings, desc, value);
+    return known;
+}
+
+const char *settings_word(const char *name, u32 value, char *out, u64 out_cap) {
+    if (out_cap == 0) return "";
+    out[0] = 0;
+    for (u32 i = 0; i < render_setting_count; i++) {
+        const SettingDesc *desc = &render_setting_descs[i];
+        if (desc->type != SETTING_ENUM || strcmp(desc->name, name) != 0) continue;
+        const char *cursor = desc->words, *word;
+        u32 length;
+        for (u32 index = 0; (length = next_word(&cursor, &word)) > 0; index++)
+            if (index == value) snprintf(out, out_cap, "%.*s", (int)length, word);
+    }
+    return out;
+}

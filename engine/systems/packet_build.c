@@ -1,0 +1,330 @@
+// packet_build.c: the world as one frame sees it, in one block of memory.
+// Data in: the world after a tick, the loaded assets, a camera, settings, texts. Data out: a
+// packet (frame/packet.h). Called by: shells, tools and tests, once a frame, main thread. Does
+// not: change the world, keep anything between frames, or know a GPU.
+//
+// Everything is collected in scratch memory first, then the packet is laid out once, and the large
+// arrays (instances, light lists) are written right into it. The same world and desc give the same
+// bytes with any number of threads.
+#include "packet_parts.h"
+#include "../base/clock.h"
+#include "../base/hash.h"
+#include <string.h>
+
+// ---- view ----
+
+static PacketView make_view(const PacketBuildDesc *desc) {
+    const TransformTable *transforms = WORLD_TABLE(desc->world, Transform, transform);
+    const CameraTable *cameras = WORLD_TABLE(desc->world, Camera, camera);
+    u32 place = table_row(&transforms->table, desc->camera);
+    u32 lens = table_row(&cameras->table, desc->camera);
+    Mat34 world = mat34_identity();
+    if (place != ROW_NONE) columns_get_mat34(&transforms->w00, place, world.m);
+    f32 fov_deg = 60.0f;
+    PacketView view = {.near = 0.1f};
+    if (lens != ROW_NONE) {
+        fov_deg = CLAMP(cameras->fov[lens], 1.0f, 170.0f);
+        view.near = CLAMP(cameras->near[lens], 1e-4f, 1e3f);
+    }
+    f32 fov_rad = DEG_TO_RAD(fov_deg), aspect = (f32)desc->width_px / (f32)desc->height_px;
+
+    // A camera below a scaled parent must not scale the world: only directions are taken.
+    view.position = mat34_translation(&world);
+    view.forward = vec3_normalize(vec3(-world.m[2], -world.m[6], -world.m[10]));
+    view.right =
+        vec3_normalize(vec3_cross(view.forward, vec3(world.m[1], world.m[5], world.m[9])));
+    if (!(vec3_dot(view.forward, view.forward) > 0.5f && vec3_dot(view.right, view.right) > 0.5f))
+        view.forward = vec3(0, 0, -1), view.right = vec3(1, 0, 0); // a flattened matrix
+    view.up = vec3_cross(view.right, view.forward);
+    view.tan_y = det_tan(fov_rad * 0.5f);
+    view.tan_x = view.tan_y * aspect;
+
+    Vec3 r = view.right, u = view.up, f = view.forward, p = view.position;
+    view.view = (Mat4){{r.x, u.x, -f.x, 0, r.y, u.y, -f.y, 0, r.z, u.z, -f.z, 0, -vec3_dot(r, p),
+                        -vec3_dot(u, p), vec3_dot(f, p), 1}};
+    view.view_projection =
+        mat4_mul(mat4_perspective_reversed(fov_rad, aspect, view.near), view.view);
+    view.frustum = frustum_from_matrix(&view.view_projection);
+    return view;
+}
+
+static void set_vec4(f32 *out, f32 x, f32 y, f32 z, f32 w) {
+    out[0] = x, out[1] = y, out[2] = z, out[3] = w;
+}
+
+static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const PacketView *view,
+                        const Environment *e) {
+    Vec3 right = vec3_scale(view->right, view->tan_x), up = vec3_scale(view->up, view->tan_y);
+    Vec3 p = view->position, f = view->forward;
+    f32 width = (f32)desc->width_px, height = (f32)desc->height_px, glow = e->ambient_intensity;
+    // The shader's clock wraps once an hour: more digits would only make it step.
+    f32 time_s = (f32)(desc->world->tick % (3600u * TICK_RATE)) / TICK_RATE;
+    memcpy(frame->view_projection, view->view_projection.m, sizeof frame->view_projection);
+    memcpy(frame->view, view->view.m, sizeof frame->view);
+    set_vec4(frame->camera, p.x, p.y, p.z, view->near);
+    set_vec4(frame->ray_right, right.x, right.y, right.z, 0);
+    set_vec4(frame->ray_up, up.x, up.y, up.z, 0);
+    set_vec4(frame->ray_forward, f.x, f.y, f.z, 0);
+    set_vec4(frame->viewport, width, height, 1.0f / width, 1.0f / height);
+    set_vec4(frame->ambient, e->ambient_r * glow, e->ambient_g * glow, e->ambient_b * glow,
+             e->exposure * desc->settings.exposure);
+    set_vec4(frame->sky_zenith, e->sky_zenith_r, e->sky_zenith_g, e->sky_zenith_b, e->stars);
+    set_vec4(frame->sky_horizon, e->sky_horizon_r, e->sky_horizon_g, e->sky_horizon_b, time_s);
+    set_vec4(frame->attenuation, e->attenuation_constant, e->attenuation_linear,
+             e->attenuation_quadratic, 0);
+}
+
+// ---- flags ----
+
+// Stamps at or after the previous packet's: an edit between that packet and the next tick carries
+// the same stamp as the packet saw.
+static u32 find_flags(const World *world, u32 since) {
+    const DrawableTable *drawables = WORLD_TABLE(world, Drawable, drawable);
+    const InstanceTable *instances = WORLD_TABLE(world, Instance, instance);
+    if (since == 0) return PACKET_REVOXELISE | PACKET_RELIGHT;
+    u32 flags = 0;
+    if (table_changed_since(&WORLD_TABLE(world, Light, light)->table, since) ||
+        table_changed_since(&WORLD_TABLE(world, Material, material)->table, since))
+        flags |= PACKET_RELIGHT;
+    // Rows that came or went, and modes that were switched, do not tell what they were before.
+    if (drawables->table.structure_stamp >= since ||
+        table_changed_since(&instances->table, since))
+        return flags | PACKET_REVOXELISE;
+    if (!table_changed_since(&drawables->table, since)) return flags;
+    for (u32 row = 0; row < drawables->table.count; row++) {
+        if (drawables->table.stamp[row] < since) continue;
+        u32 owner = table_row(&instances->table, drawables->owner[row]);
+        if (owner != ROW_NONE && instances->voxel_mode[owner] == VOXEL_DYNAMIC)
+            return flags | PACKET_REVOXELISE;
+    }
+    return flags;
+}
+
+// ---- culling ----
+
+typedef struct RowList { u32 *rows; u32 count; } RowList;
+
+static RowList cull_drawables(const World *world, const Frustum *frustum, Arena *scratch) {
+    const DrawableTable *d = WORLD_TABLE(world, Drawable, drawable);
+    RowList list = {ARENA_PUSH(scratch, u32, ALIGN_UP(d->table.count, SIMD_WIDTH)), 0};
+    list.count = cull_spheres(frustum, d->bounds_x, d->bounds_y, d->bounds_z, d->bounds_radius,
+                              d->table.count, list.rows);
+    return list;
+}
+
+// ---- the packet ----
+
+typedef struct Parts {
+    PacketView view;
+    LightParts lights;
+    LightGridPlan grid;
+    MaterialPalette *palette;
+    DrawLists draws, shadow;
+    ShadowFit shadow_fit;
+    u32 shadow_size_px, emissive_count, character_count;
+} Parts;
+
+static bool draw_is_emissive(const MaterialPalette *palette, const PacketDraw *draw) {
+    return palette->bindings[draw->material].emissive_pass;
+}
+
+static void write_draws(Packet *packet, const Parts *parts) {
+    PacketDraw *out[3] = {PACKET_WRITE(packet, opaque_draws, PacketDraw),
+                          PACKET_WRITE(packet, mask_draws, PacketDraw),
+                          PACKET_WRITE(packet, blend_draws, PacketDraw)};
+    PacketDraw *emissive = PACKET_WRITE(packet, emissive_draws, PacketDraw);
+    for (u32 alpha = 0; alpha < 3; alpha++) {
+        for (u32 i = 0; i < parts->draws.counts[alpha]; i++) {
+            const PacketDraw *draw = &parts->draws.lists[alpha][i];
+            out[alpha][i] = *draw;
+            if (draw_is_emissive(parts->palette, draw)) *emissive++ = *draw;
+        }
+    }
+    PacketDraw *shadow[2] = {PACKET_WRITE(packet, shadow_draws, PacketDraw),
+                             PACKET_WRITE(packet, shadow_mask_draws, PacketDraw)};
+    for (u32 alpha = 0; alpha < 2; alpha++) {
+        for (u32 i = 0; i < parts->shadow.counts[alpha]; i++) {
+            shadow[alpha][i] = parts->shadow.lists[alpha][i];
+            shadow[alpha][i].first_instance += parts->draws.row_count;
+        }
+    }
+}
+
+// All that a shadow map's texels follow from.
+static u64 hash_shadow(const Packet *packet, const Parts *parts, u64 store_stamp) {
+    const InstanceRecord *instances =
+        PACKET_DATA(packet, instances, InstanceRecord) + parts->draws.row_count;
+    u64 key = hash_bytes(packet->frame.shadow_matrix, sizeof packet->frame.shadow_matrix,
+                         store_stamp ^ packet->shadow_size_px);
+    key = hash_bytes(instances, (u64)parts->shadow.row_count * sizeof *instances, key);
+    // Draws without first_instance, which hangs on how many instances the view has.
+    const PacketSection lists[2] = {packet->shadow_draws, packet->shadow_mask_draws};
+    for (u32 list = 0; list < 2; list++) {
+        const PacketDraw *draws = (const PacketDraw *)((const u8 *)packet + lists[list].offset);
+        for (u32 i = 0; i < lists[list].count; i++) {
+            const PacketMaterial *binding = &parts->palette->bindings[draws[i].material];
+            f32 cutoff = parts->palette->records[draws[i].material].albedo[3];
+            u32 words[6] = {list, draws[i].mesh, draws[i].instance_count, binding->double_sided,
+                            binding->albedo_texture};
+            memcpy(&words[5], &cutoff, sizeof cutoff);
+            key = hash_bytes(words, sizeof words, key);
+        }
+    }
+    return key;
+}
+
+static void write_shadow(Packet *packet, const Parts *parts, const Environment *environment,
+                         u64 store_stamp) {
+    packet->shadow_size_px = parts->shadow_size_px;
+    memcpy(packet->frame.shadow_matrix, mat4_identity().m, sizeof packet->frame.shadow_matrix);
+    if (parts->shadow_size_px == 0) return;
+    const ShadowFit *fit = &parts->shadow_fit;
+    Mat4 matrix = shadow_fit_matrix(fit);
+    memcpy(packet->frame.shadow_matrix, matrix.m, sizeof matrix.m);
+    // Offset along the normal: what a slanted surface rises over one and a half texels at 45
+    // degrees; the bias takes half a texel off the rest, in units of the depth range.
+    set_vec4(packet->frame.shadow, 1.0f / (f32)parts->shadow_size_px, 1.5f * fit->texel_m,
+             environment->shadow_distance, 0.5f * fit->texel_m / (fit->front - fit->rear));
+    PACKET_WRITE(packet, directionals, DirectionalRecord)[0].color[3] = 1.0f;
+    packet->shadow_key = hash_shadow(packet, parts, store_stamp);
+}
+
+static void write_texts(Packet *packet, const PacketBuildDesc *desc) {
+    PacketText *out = PACKET_WRITE(packet, texts, PacketText);
+    u8 *characters = PACKET_WRITE(packet, characters, u8);
+    u32 offset = 0;
+    for (u32 i = 0; i < desc->text_count; i++) {
+        const PacketText2D *text = &desc->texts[i];
+        u32 length = (u32)strlen(text->text);
+        out[i] = (PacketText){text->x_px, text->y_px, text->size_px, text->color, offset, length};
+        memcpy(characters + offset, text->text, length);
+        offset += length;
+    }
+}
+
+static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
+                            const Environment *environment, Arena *out, Arena *scratch) {
+    const LightParts *lights = &parts->lights;
+    u32 light_count = lights->point_count + lights->spot_count;
+    PacketSizes sizes = {
+        .instances = parts->draws.row_count + parts->shadow.row_count,
+        .opaque_draws = parts->draws.counts[ALPHA_OPAQUE],
+        .mask_draws = parts->draws.counts[ALPHA_MASK],
+        .blend_draws = parts->draws.counts[ALPHA_BLEND],
+        .emissive_draws = parts->emissive_count,
+        .shadow_draws = parts->shadow.counts[ALPHA_OPAQUE],
+        .shadow_mask_draws = parts->shadow.counts[ALPHA_MASK],
+        .materials = parts->palette->count,
+        .material_bindings = parts->palette->count,
+        .lights = light_count + 1,
+        .spots = lights->spot_count,
+        .directionals = lights->directional_count,
+        .tiles = parts->grid.tile_count,
+        .light_indices = parts->grid.index_count,
+        .gi_lights = lights->gi_count,
+        .texts = desc->text_count,
+        .characters = parts->character_count,
+    };
+    Packet *packet = packet_allocate(out, &sizes);
+    packet->tick = desc->world->tick;
+    packet->flags = find_flags(desc->world, desc->last_stamp);
+    packet->width_px = desc->width_px;
+    packet->height_px = desc->height_px;
+    packet->brdf_mask = parts->palette->brdf_mask;
+    packet->attenuation = environment->attenuation;
+    packet->settings = desc->settings;
+    write_frame(&packet->frame, desc, &parts->view, environment);
+    packet->frame.counts[0] = lights->point_count;
+    packet->frame.counts[1] = lights->spot_count;
+    packet->frame.counts[2] = lights->directional_count;
+    packet->frame.counts[3] = parts->grid.tiles_x;
+    packet->frame.counts2[0] = sizes.materials;
+    packet->frame.counts2[1] = sizes.instances;
+    packet->frame.counts2[2] = light_count;
+    packet->frame.counts2[3] = packet->tick;
+
+    InstanceRecord *instances = PACKET_WRITE(packet, instances, InstanceRecord);
+    packet_write_instances(desc->world, &parts->draws, instances);
+    packet_write_instances(desc->world, &parts->shadow, instances + parts->draws.row_count);
+    write_draws(packet, parts);
+#define COPY(section, Type, from) \
+    memcpy(PACKET_WRITE(packet, section, Type), from, (u64)sizes.section * sizeof(Type))
+    COPY(materials, MaterialRecord, parts->palette->records);
+    COPY(material_bindings, PacketMaterial, parts->palette->bindings);
+    COPY(lights, LightRecord, lights->lights);
+    COPY(spots, SpotRecord, lights->spots);
+    COPY(directionals, DirectionalRecord, lights->directionals);
+    COPY(gi_lights, LightRecord, lights->gi_lights);
+#undef COPY
+    light_grid_fill(&parts->grid, PACKET_WRITE(packet, tiles, TileRecord),
+                    PACKET_WRITE(packet, light_indices, u32), scratch);
+    write_shadow(packet, parts, environment, desc->assets->stamp);
+    write_texts(packet, desc);
+    packet->counts = (PacketCounts){
+        .lights_total = lights->total,
+        .lights_visible = lights->visible,
+        .lights_shaded = parts->grid.lights_listed,
+        .drawables_total = WORLD_TABLE(desc->world, Drawable, drawable)->table.count,
+        .drawables_visible = parts->draws.row_count,
+        .shadow_casters = parts->shadow.row_count,
+        .triangles = parts->draws.triangles,
+        .tile_count = parts->grid.tile_count,
+        .tile_light_max = parts->grid.longest,
+        .light_index_count = parts->grid.index_count,
+    };
+    return packet;
+}
+
+static f32 lap_ms(f64 *start_ms) {
+    f64 now = clock_now_ms(), lap = now - *start_ms;
+    *start_ms = now;
+    return (f32)lap;
+}
+
+const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scratch,
+                           PacketBuildTimes *times) {
+    PacketBuildDesc desc = *given;
+    settings_clamp(&desc.settings);
+    desc.width_px = CLAMP(desc.width_px, 1, PACKET_SIDE_MAX);
+    desc.height_px = CLAMP(desc.height_px, 1, PACKET_SIDE_MAX);
+    u64 mark = arena_mark(scratch);
+    f64 clock_ms = clock_now_ms();
+    PacketBuildTimes laps = {0};
+    Environment environment = environment_read(desc.world);
+    Parts parts = {.view = make_view(&desc)};
+    for (u32 i = 0; i < desc.text_count; i++)
+        parts.character_count += (u32)strlen(desc.texts[i].text);
+
+    Frustum everywhere = {.count = 0};
+    RowList visible = cull_drawables(
+        desc.world, desc.settings.mesh_culling ? &parts.view.frustum : &everywhere, scratch);
+    laps.cull_ms = lap_ms(&clock_ms);
+
+    parts.lights = packet_collect_lights(&desc, &parts.view, scratch);
+    laps.lights_ms = lap_ms(&clock_ms);
+    parts.grid = light_grid_plan(&parts.lights.grid_input, scratch);
+    laps.grid_ms = lap_ms(&clock_ms);
+
+    parts.palette = packet_collect_materials(desc.world, scratch);
+    parts.draws = packet_collect_draws(&desc, &parts.view, parts.palette, visible.rows,
+                                       visible.count, false, scratch);
+    for (u32 alpha = 0; alpha < 3; alpha++)
+        for (u32 i = 0; i < parts.draws.counts[alpha]; i++)
+            parts.emissive_count +=
+                draw_is_emissive(parts.palette, &parts.draws.lists[alpha][i]);
+    if (parts.lights.casts_shadow && desc.settings.shadows) {
+        parts.shadow_size_px = CLAMP(environment.shadow_size, 64, 4096);
+        parts.shadow_fit = shadow_fit_view(&parts.view, parts.lights.shadow_direction,
+                                           environment.shadow_distance, parts.shadow_size_px);
+        RowList casters = cull_drawables(desc.world, &parts.shadow_fit.frustum, scratch);
+        parts.shadow = packet_collect_draws(&desc, &parts.view, parts.palette, casters.rows,
+                                            casters.count, true, scratch);
+        shadow_fit_casters(&parts.shadow_fit, WORLD_TABLE(desc.world, Drawable, drawable),
+                           parts.shadow.rows, parts.shadow.row_count);
+    }
+    Packet *packet = write_packet(&desc, &parts, &environment, out, scratch);
+    laps.pack_ms = lap_ms(&clock_ms);
+    if (times) *times = laps;
+    arena_rewind(scratch, mark);
+    return packet;
+}

@@ -1,0 +1,240 @@
+// packet_draws.c: material palette, drawcalls, instance records.
+// Data in: drawables that passed culling, the material table, meshes. Data out: per alpha mode a
+// list of drawcalls, each a run of instances with the same mesh and material; the palette that
+// G-buffers index. Called by: packet_build (view, and again for the shadow map). Does not: cull, or
+// know how a draw is recorded.
+//
+// Order: alpha mode, material, mesh, entity; blended ones far to near. It comes from sorting 64-bit
+// keys, so it does not depend on the order of rows.
+#include "packet_parts.h"
+#include "../base/jobs.h"
+#include "../base/log.h"
+#include <math.h>
+#include <string.h>
+
+#define INSTANCES_PER_JOB 1024
+
+// ---- materials ----
+
+static void make_material(const MaterialTable *m, u32 row, MaterialRecord *record,
+                          PacketMaterial *binding) {
+    f32 strength = m->emissive_strength[row];
+    f32 emissive[3] = {m->emissive_r[row] * strength, m->emissive_g[row] * strength,
+                       m->emissive_b[row] * strength};
+    bool textured = m->emissive_texture[row] != 0;
+    // Words beyond the list can only come from a game's mistake; here they would become indices.
+    u32 brdf = MIN(m->brdf[row], BRDF_BLINN_PHONG_NORMALIZED);
+    u32 alpha_mode = MIN(m->alpha_mode[row], ALPHA_BLEND);
+    f32 power = m->power[row], sigma2 = m->diffuse_roughness[row] * m->diffuse_roughness[row];
+    bool oren_nayar = m->diffuse[row] == DIFFUSE_OREN_NAYAR;
+    f32 normalisation = 1.0f;
+    if (brdf == BRDF_LAMBERT) normalisation = 0.0f;
+    // Energy of a Blinn-Phong lobe (Akenine-Moller et al., Real-Time Rendering, 3rd ed., eq. 7.49).
+    if (brdf == BRDF_BLINN_PHONG_NORMALIZED) normalisation = (power + 8.0f) / (8.0f * PI_F);
+    *record = (MaterialRecord){
+        .albedo = {m->albedo_r[row], m->albedo_g[row], m->albedo_b[row],
+                   alpha_mode == ALPHA_MASK ? m->alpha_cutoff[row] : 0.0f},
+        .specular = {m->specular_r[row], m->specular_g[row], m->specular_b[row], power},
+        .emissive = {textured ? 0.0f : emissive[0], textured ? 0.0f : emissive[1],
+                     textured ? 0.0f : emissive[2], m->receives_dynamic_light[row] ? 1.0f : 0.0f},
+        // Oren and Nayar 1994, "Generalization of Lambert's reflectance model", eq. 30.
+        .lobes = {(f32)brdf, normalisation,
+                  oren_nayar ? 1.0f - 0.5f * sigma2 / (sigma2 + 0.33f) : 1.0f,
+                  oren_nayar ? 0.45f * sigma2 / (sigma2 + 0.09f) : 0.0f},
+        .extra = {m->fresnel[row] ? 1.0f : 0.0f, textured ? emissive[0] : 0.0f,
+                  textured ? emissive[1] : 0.0f, textured ? emissive[2] : 0.0f}};
+    *binding = (PacketMaterial){.albedo_texture = m->albedo_texture[row],
+                                .normal_texture = m->normal_texture[row],
+                                .emissive_texture = m->emissive_texture[row],
+                                .alpha_mode = alpha_mode,
+                                .double_sided = m->double_sided[row] != 0,
+                                .emissive_pass = textured};
+}
+
+// What a drawable without a material gets: the columns' own defaults would need a table row.
+static const MaterialRecord missing_record = {.albedo = {0.8f, 0.8f, 0.8f, 0.0f},
+                                              .emissive = {0.0f, 0.0f, 0.0f, 1.0f},
+                                              .lobes = {BRDF_LAMBERT, 0.0f, 1.0f, 0.0f}};
+
+// Palette index of a drawable's material. Neighbouring rows mostly share one: *memo spares the
+// look-up.
+typedef struct MaterialMemo { Entity entity; u32 row; } MaterialMemo;
+static u32 material_row(const MaterialTable *materials, Entity entity, MaterialMemo *memo) {
+    if (entity != memo->entity) *memo = (MaterialMemo){entity, table_row(&materials->table, entity)};
+    return memo->row;
+}
+
+MaterialPalette *packet_collect_materials(const World *world, Arena *scratch) {
+    const MaterialTable *materials = WORLD_TABLE(world, Material, material);
+    const DrawableTable *drawables = WORLD_TABLE(world, Drawable, drawable);
+    MaterialPalette *palette = ARENA_PUSH(scratch, MaterialPalette, 1);
+    u32 row_count = materials->table.count;
+    u8 *used = ARENA_PUSH(scratch, u8, row_count + 1); // the last: no material
+    MaterialMemo memo = {ENTITY_NONE, ROW_NONE};
+    for (u32 i = 0; i < drawables->table.count; i++) {
+        u32 row = material_row(materials, drawables->material[i], &memo);
+        used[row == ROW_NONE ? row_count : row] = 1;
+    }
+    palette->index_of_row = ARENA_PUSH(scratch, u16, row_count);
+    u32 dropped = 0;
+    for (u32 row = 0; row < row_count; row++) {
+        palette->index_of_row[row] = PALETTE_NONE;
+        if (!used[row]) continue;
+        if (palette->count == MATERIALS_CAP) {
+            palette->index_of_row[row] = MATERIALS_CAP - 1; // wrong surface, but drawn
+            dropped++;
+            continue;
+        }
+        u32 index = palette->count++;
+        palette->index_of_row[row] = (u16)index;
+        make_material(materials, row, &palette->records[index], &palette->bindings[index]);
+        palette->brdf_mask |= 1u << (u32)palette->records[index].lobes[0];
+        if (materials->diffuse[row] == DIFFUSE_OREN_NAYAR)
+            palette->brdf_mask |= BRDF_MASK_OREN_NAYAR;
+        if (materials->fresnel[row]) palette->brdf_mask |= BRDF_MASK_FRESNEL;
+    }
+    if (used[row_count]) {
+        palette->missing = MIN(palette->count, MATERIALS_CAP - 1);
+        if (palette->count < MATERIALS_CAP) {
+            palette->records[palette->count++] = missing_record;
+            palette->brdf_mask |= 1u << BRDF_LAMBERT;
+        }
+    }
+    static bool told;
+    if (dropped > 0 && !told)
+        LOG(RENDER_LIMIT, "%u materials beyond %u in use look like the last one", dropped,
+            MATERIALS_CAP);
+    told |= dropped > 0;
+    return palette;
+}
+
+// ---- sorting ----
+
+typedef struct SortItem {
+    u64 key;
+    u32 row;
+    u32 material; // palette index
+} SortItem;
+
+// Least significant digit first, eight bits at a time; digits that are the same in all keys are
+// skipped. Stable. Returns which of the two arrays holds the result.
+static SortItem *radix_sort(SortItem *items, SortItem *spare, u32 count) {
+    u32 histogram[8][256];
+    memset(histogram, 0, sizeof histogram);
+    for (u32 i = 0; i < count; i++)
+        for (u32 digit = 0; digit < 8; digit++)
+            histogram[digit][(items[i].key >> (8 * digit)) & 255]++;
+    for (u32 digit = 0; digit < 8 && count > 0; digit++) {
+        u32 *places = histogram[digit], shift = 8 * digit;
+        if (places[(items[0].key >> shift) & 255] == count) continue;
+        for (u32 value = 0, sum = 0; value < 256; value++) {
+            u32 here = places[value];
+            places[value] = sum;
+            sum += here;
+        }
+        for (u32 i = 0; i < count; i++) spare[places[(items[i].key >> shift) & 255]++] = items[i];
+        SortItem *swap = items;
+        items = spare;
+        spare = swap;
+    }
+    return items;
+}
+
+// Key: alpha mode (2 bits), then material (9), mesh (16), entity (32). Blended: alpha mode, then
+// distance (32, inverted; the bits of a non-negative f32 sort like it), entity index (20).
+_Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9, "key fields");
+
+static u64 make_key(const DrawableTable *d, u32 row, u32 material, const PacketMaterial *binding,
+                    const PacketView *view, bool for_shadow) {
+    u64 alpha = binding->alpha_mode, entity = d->table.entity[row];
+    if (alpha == ALPHA_BLEND) {
+        Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
+                   d->bounds_z[row] - view->position.z};
+        f32 distance2 = vec3_dot(to, to);
+        u32 bits;
+        memcpy(&bits, &distance2, sizeof bits);
+        return alpha << 57 | (u64)~bits << ENTITY_INDEX_BITS | ENTITY_INDEX(entity);
+    }
+    u64 surface = material;
+    // A depth pass sees of an opaque material only whether both sides count: longer runs.
+    if (for_shadow && alpha == ALPHA_OPAQUE) surface = binding->double_sided;
+    return alpha << 57 | surface << 48 | (u64)d->mesh[row] << 32 | entity;
+}
+
+DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *view,
+                               const MaterialPalette *palette, const u32 *rows, u32 row_count,
+                               bool for_shadow, Arena *scratch) {
+    const DrawableTable *d = WORLD_TABLE(desc->world, Drawable, drawable);
+    const InstanceTable *instances = WORLD_TABLE(desc->world, Instance, instance);
+    const MaterialTable *materials = WORLD_TABLE(desc->world, Material, material);
+    SortItem *items = ARENA_PUSH(scratch, SortItem, row_count);
+    SortItem *spare = ARENA_PUSH(scratch, SortItem, row_count);
+    DrawLists lists = {0};
+    MaterialMemo memo = {ENTITY_NONE, ROW_NONE};
+    for (u32 i = 0; i < row_count; i++) {
+        u32 row = rows[i];
+        // The sphere is of the last tick; the mesh may have been changed since.
+        if (d->mesh[row] == 0 || d->mesh[row] >= desc->assets->mesh_count) continue;
+        u32 place = material_row(materials, d->material[row], &memo);
+        u32 material = place == ROW_NONE ? palette->missing : palette->index_of_row[place];
+        const PacketMaterial *binding = &palette->bindings[material];
+        if (for_shadow) {
+            u32 owner = table_row(&instances->table, d->owner[row]);
+            if (owner == ROW_NONE || !instances->casts_shadow[owner] ||
+                binding->alpha_mode == ALPHA_BLEND)
+                continue;
+        }
+        u64 key = make_key(d, row, material, binding, view, for_shadow);
+        items[lists.row_count++] = (SortItem){key, row, material};
+        lists.triangles += desc->assets->meshes[d->mesh[row]].index_count / 3;
+    }
+    items = radix_sort(items, spare, lists.row_count);
+
+    lists.rows = ARENA_PUSH(scratch, u32, lists.row_count);
+    lists.material = ARENA_PUSH(scratch, u16, lists.row_count);
+    PacketDraw *draws = ARENA_PUSH(scratch, PacketDraw, lists.row_count), *draw = draws - 1;
+    u64 run = UINT64_MAX; // what the draws of one run share
+    for (u32 i = 0; i < lists.row_count; i++) {
+        const SortItem *item = &items[i];
+        u32 mesh = d->mesh[item->row], alpha = palette->bindings[item->material].alpha_mode;
+        lists.rows[i] = item->row;
+        lists.material[i] = (u16)item->material;
+        u64 this_run = alpha == ALPHA_BLEND
+                           ? (u64)alpha << 57 | (u64)item->material << 48 | (u64)mesh << 32
+                           : item->key & ~(u64)UINT32_MAX;
+        if (this_run != run) {
+            *++draw = (PacketDraw){mesh, item->material, i, 0};
+            if (!lists.lists[alpha]) lists.lists[alpha] = draw; // lists follow each other
+            lists.counts[alpha]++;
+            run = this_run;
+        }
+        draw->instance_count++;
+    }
+    return lists;
+}
+
+// ---- instances ----
+
+typedef struct InstanceJob {
+    const DrawableTable *drawables;
+    const DrawLists *draws;
+    InstanceRecord *out;
+} InstanceJob;
+
+static void job_instances(void *context, u32 begin, u32 end, u32 thread_index) {
+    (void)thread_index;
+    const InstanceJob *job = context;
+    const DrawableTable *d = job->drawables;
+    for (u32 i = begin; i < end; i++) {
+        u32 row = job->draws->rows[i];
+        InstanceRecord *record = &job->out[i];
+        columns_get_mat34(&d->w00, row, (f32 *)record->world);
+        record->ids[0] = job->draws->material[i];
+        record->ids[1] = d->table.entity[row];
+    }
+}
+
+void packet_write_instances(const World *world, const DrawLists *draws, InstanceRecord *out) {
+    InstanceJob job = {WORLD_TABLE(world, Drawable, drawable), draws, out};
+    jobs_for(draws->row_count, INSTANCES_PER_JOB, job_instances, &job);
+}

@@ -1,0 +1,79 @@
+// packet_parts.h: what packet_build.c puts together, and who makes it. Private to these files:
+//   packet_build.c   view, flags, texts, the order of it all
+//   packet_lights.c  the light manager: lights of the view, GI lights, directional lights
+//   packet_shadow.c  the shadow map's matrix
+//   packet_draws.c   material palette, drawcalls, instances
+// All arrays lie in the scratch arena until the packet's size is known.
+#ifndef LUZ_PACKET_PARTS_H
+#define LUZ_PACKET_PARTS_H
+#include "environment.h"
+#include "light_grid.h"
+#include "systems.h"
+
+typedef struct PacketView {
+    Vec3 position, right, up, forward; // world; orthonormal
+    f32 tan_x, tan_y, near;            // tangents of the half angles of view
+    Mat4 view, view_projection;
+    Frustum frustum;
+} PacketView;
+
+// ---- packet_lights.c ----
+
+typedef struct LightParts {
+    u32 total, visible; // local lights: of the level, of the view
+    u32 point_count, spot_count;
+    LightRecord *lights; // [point_count + spot_count + 1]: points, spots, the dummy
+    SpotRecord *spots;   // [spot_count]
+    LightGridInput grid_input;
+    LightRecord *gi_lights; // [gi_count]
+    u32 gi_count;
+    DirectionalRecord directionals[DIRECTIONALS_CAP];
+    u32 directional_count;
+    bool casts_shadow;     // directional 0 wants a shadow map
+    Vec3 shadow_direction; // unit, the way directional 0 shines
+} LightParts;
+LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *view,
+                                 Arena *scratch);
+
+// ---- packet_shadow.c ----
+
+typedef struct ShadowFit {
+    Vec3 right, up, back;      // the light looks along -back
+    f64 center_right, center_up; // of the square, on a whole texel
+    f32 half_m, texel_m;       // half a side of the square, a texel
+    f32 front, rear;           // along back: ends of the depth range
+    Frustum frustum;           // casters outside shadow nothing in the view
+} ShadowFit;
+// Square and rear end; front starts at the fitted sphere and grows with shadow_fit_casters.
+ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m, u32 size_px);
+void shadow_fit_casters(ShadowFit *fit, const DrawableTable *drawables, const u32 *rows, u32 count);
+Mat4 shadow_fit_matrix(const ShadowFit *fit);
+
+// ---- packet_draws.c ----
+
+typedef struct MaterialPalette {
+    u16 *index_of_row; // [material rows], PALETTE_NONE = no drawable uses it
+    u32 missing;       // index for drawables without a material
+    u32 count;
+    MaterialRecord records[MATERIALS_CAP];
+    PacketMaterial bindings[MATERIALS_CAP];
+    u32 brdf_mask;
+} MaterialPalette;
+#define PALETTE_NONE UINT16_MAX
+MaterialPalette *packet_collect_materials(const World *world, Arena *scratch);
+
+typedef struct DrawLists {
+    u32 *rows;     // [row_count] drawable row of each instance, in draw order
+    u16 *material; // [row_count] palette index of each
+    u32 row_count;
+    PacketDraw *lists[3]; // by AlphaMode; first_instance counts from this object's first row
+    u32 counts[3];
+    u32 triangles;
+} DrawLists;
+// rows: drawables that pass culling. For shadows, opaque draws are told apart only by what a depth
+// pass sees, and blended ones are left out.
+DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *view,
+                               const MaterialPalette *palette, const u32 *rows, u32 row_count,
+                               bool for_shadow, Arena *scratch);
+void packet_write_instances(const World *world, const DrawLists *draws, InstanceRecord *out);
+#endif
