@@ -144,6 +144,8 @@ u32 asset_generate_model(AssetStore *store, const ShapeDesc *desc);
 // warning. Same path and kind twice: same id.
 u32 asset_load_texture(AssetStore *store, const FileRoot *root, const char *path,
                        TextureKind kind);
+// Path below the root that the texture was loaded from; "" for those of models and for raw data.
+const char *asset_texture_path(const AssetStore *store, u32 texture);
 
 // Copies raw data into the store (captures put meshes and textures back this way). Ids, 0 at a
 // limit. The caller has checked indices < vertex_count and sizes.
