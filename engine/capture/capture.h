@@ -35,10 +35,13 @@ typedef struct RecordedImage {
     const u8 *thumbnail; // RGB8, THUMBNAIL_WIDTH x THUMBNAIL_HEIGHT
 } RecordedImage;
 
+// Ticks are counted from the start of the recording: after the first simulated tick the tick is 1;
+// 0 is the state before it (which a picture may show, too).
+
 // --- Writing ---
 typedef struct RecordingWriter RecordingWriter;
 RecordingWriter *recording_writer_create(const RecordingInfo *info, const World *world_at_start);
-// After the tick was simulated.
+// After the tick was simulated. The world's components stay the same from start to end.
 void recording_writer_tick(RecordingWriter *writer, Input input, const World *world);
 void recording_writer_image(RecordingWriter *writer, u32 tick, u64 image_hash, const u8 *rgba,
                             u32 width_px, u32 height_px);
@@ -60,7 +63,8 @@ typedef struct Recording {
 // Everything in the arena. False with LOG CAPTURE_READ that says what is wrong and where (byte).
 bool recording_read(const char *path, Arena *arena, Recording *out);
 
-// Feeds ticks to a world being replayed and compares. Call after each simulated tick.
+// Feeds ticks to a world being replayed and compares. Call with tick 0 for the state at the start (or
+// leave that out), then after each simulated tick, in order.
 typedef struct RecordingCheck RecordingCheck;
 RecordingCheck *recording_check_create(const Recording *recording, const World *world_at_start, Arena *arena);
 typedef struct RecordingDifference {
