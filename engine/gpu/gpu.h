@@ -60,6 +60,9 @@ typedef struct GpuInfo {
     u32 max_texture_side;
     f32 max_anisotropy;
     bool timestamps;
+    // Subgroup basic, ballot, shuffle and arithmetic operations work in these stages.
+    bool subgroup_compute, subgroup_fragment;
+    bool depth_clamp;                // GpuPipelineDesc.depth_clamp works (else it is ignored)
 } GpuInfo;
 
 // NULL with LOG GPU_NONE that says what to do (install a driver package ...) when there is no
@@ -277,6 +280,9 @@ void gpu_cmd_draw(GpuCommands *cmd, u32 vertex_count, u32 instance_count, u32 fi
 void gpu_cmd_draw_indexed(GpuCommands *cmd, u32 index_count, u32 instance_count, u32 first_index,
                           i32 vertex_offset, u32 first_instance);
 void gpu_cmd_dispatch(GpuCommands *cmd, u32 x, u32 y, u32 z);
+// Group counts (3 x u32) from a buffer made with `indirect`, GPU_USAGE_INDIRECT.
+void gpu_cmd_dispatch_indirect(GpuCommands *cmd, GpuBuffer buffer, u64 offset);
+// Mip 0, tightly packed; texture in GPU_USAGE_COPY_SOURCE.
 void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuffer buffer);
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name);
