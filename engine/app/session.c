@@ -171,7 +171,9 @@ void session_settle(Session *session) {
 
 static void session_report(Diagnostics *diagnostics, const char *file, const char *text) {
     Diagnostic *item = &diagnostics->items[diagnostics->count++];
-    *item = (Diagnostic){true, file, 1, 1, text, "", "", 1};
+    *item = (Diagnostic){.is_error = true, .file = file, .line = 1, .column = 1, .text = text};
+    item->hint = item->source = "";
+    item->length = 1;
     diagnostics->error_count++;
 }
 
@@ -198,54 +200,67 @@ typedef struct LoadedLevel {
     LevelInfo info;
 } LoadedLevel;
 
-static bool session_load_fresh(Session *session, const char *root_path, const char *relative,
-                               LoadedLevel *out) {
+// The arena and the diagnostics of the level to come.
+static Arena *session_begin_load(Session *session) {
     Arena *arena = &session->level_arena[1 - session->level_slot];
     arena_reset(arena);
-    Diagnostics *diagnostics = ARENA_PUSH(arena, Diagnostics, 1);
-    diagnostics->arena = arena;
-    session->diagnostics = diagnostics;
-    *out = (LoadedLevel){.root = {.fd = -1}};
-    if (!file_root_open(&out->root, root_path)) {
-        session_report(diagnostics, arena_copy_string(arena, root_path),
-                       "the level's directory cannot be opened");
-        return false;
-    }
+    session->diagnostics = ARENA_PUSH(arena, Diagnostics, 1);
+    session->diagnostics->arena = arena;
+    return arena;
+}
+
+// An empty world with all components, and an empty store. `name` is for messages.
+static bool loaded_level_create(Session *session, const char *name, LoadedLevel *out) {
     if (!asset_store_create(&out->assets)) {
-        session_report(diagnostics, arena_copy_string(arena, relative), "out of memory");
-        file_root_close(&out->root);
+        session_report(session->diagnostics, name, "out of memory");
         return false;
     }
     if (session->desc.texture_side_cap)
         out->assets.texture_side_cap = session->desc.texture_side_cap;
     out->world = world_create(0);
-    bool ok = true;
-    for (u32 i = 0; ok && i < session->desc.component_count; i++)
-        ok = world_register_component(out->world, session->desc.components[i]) != UINT32_MAX;
-    if (!ok) session_report(diagnostics, arena_copy_string(arena, relative), "too many components");
-    ok = ok &&
-         level_load(&out->root, relative, out->world, &out->assets, arena, &out->info, diagnostics);
-    if (ok) return true;
-    world_destroy(out->world);
-    asset_store_destroy(&out->assets);
-    file_root_close(&out->root);
-    return false;
+    for (u32 i = 0; i < session->desc.component_count; i++) {
+        if (world_register_component(out->world, session->desc.components[i]) != UINT32_MAX)
+            continue;
+        session_report(session->diagnostics, name, "too many components");
+        return false;
+    }
+    return true;
 }
 
-bool session_load_below(Session *session, const char *root_path, const char *relative,
-                        const PlayerPlace *place) {
-    LoadedLevel fresh;
-    if (!session_load_fresh(session, root_path, relative, &fresh)) return false;
-    u64 *stamps = session_stamp_files(session, &fresh.root, &fresh.info);
+static void loaded_level_destroy(LoadedLevel *level) {
+    if (level->world) world_destroy(level->world);
+    if (level->assets.arena.memory) asset_store_destroy(&level->assets);
+    file_root_close(&level->root);
+}
+
+static bool session_load_fresh(Session *session, const char *root_path, const char *relative,
+                               LoadedLevel *out) {
+    Arena *arena = session_begin_load(session);
+    *out = (LoadedLevel){.root = {.fd = -1}};
+    if (!file_root_open(&out->root, root_path)) {
+        session_report(session->diagnostics, arena_copy_string(arena, root_path),
+                       "the level's directory cannot be opened");
+        return false;
+    }
+    bool ok = loaded_level_create(session, arena_copy_string(arena, relative), out) &&
+              level_load(&out->root, relative, out->world, &out->assets, arena, &out->info,
+                         session->diagnostics);
+    if (!ok) loaded_level_destroy(out);
+    return ok;
+}
+
+// The loaded level takes the place of the old one.
+static void session_adopt(Session *session, const LoadedLevel *fresh, u64 *file_stamps,
+                          const char *root_path, const char *relative, const PlayerPlace *place) {
     session_unload(session);
     session->level_slot = 1 - session->level_slot;
-    session->world = fresh.world;
-    session->assets = fresh.assets;
-    session->root = fresh.root;
-    session->level = fresh.info;
-    session->file_stamps = stamps;
+    session->world = fresh->world;
+    session->assets = fresh->assets;
+    session->root = fresh->root;
+    session->level = fresh->info;
+    session->file_stamps = file_stamps;
     session->packet_stamp = 0;
-    session->world->seed = fresh.info.seed;
+    session->world->seed = fresh->info.seed;
     snprintf(session->root_path, sizeof session->root_path, "%s", root_path);
     snprintf(session->level_path, sizeof session->level_path, "%s", relative);
     // The new world has a stamp clock of its own.
@@ -255,6 +270,29 @@ bool session_load_below(Session *session, const char *root_path, const char *rel
     session_settle(session);
     session->collision = collision_create(session->world, &session->assets);
     if (session->desc.on_load) session->desc.on_load(session, session->desc.user);
+}
+
+bool session_load_below(Session *session, const char *root_path, const char *relative,
+                        const PlayerPlace *place) {
+    LoadedLevel fresh;
+    if (!session_load_fresh(session, root_path, relative, &fresh)) return false;
+    u64 *stamps = session_stamp_files(session, &fresh.root, &fresh.info);
+    session_adopt(session, &fresh, stamps, root_path, relative, place);
+    return true;
+}
+
+bool session_fill(Session *session, SessionFill fill, void *user) {
+    session_begin_load(session);
+    LoadedLevel fresh = {.root = {.fd = -1}};
+    bool ok = loaded_level_create(session, "(code)", &fresh) &&
+              fill(fresh.world, &fresh.assets, user);
+    if (!ok) {
+        loaded_level_destroy(&fresh);
+        return false;
+    }
+    fresh.info.seed = fresh.world->seed;
+    fresh.info.entity_count = fresh.world->entities_alive;
+    session_adopt(session, &fresh, NULL, "", "", NULL);
     return true;
 }
 
@@ -263,10 +301,7 @@ bool session_load(Session *session, const char *path) {
     session->stamps_before_load = NULL;
     if (level_find_root(path, root, sizeof root, relative, sizeof relative))
         return session_load_below(session, root, relative, NULL);
-    Arena *arena = &session->level_arena[1 - session->level_slot];
-    arena_reset(arena);
-    session->diagnostics = ARENA_PUSH(arena, Diagnostics, 1);
-    session->diagnostics->arena = arena;
+    Arena *arena = session_begin_load(session);
     session_report(session->diagnostics, arena_copy_string(arena, path),
                    "no such level, or its path is too long");
     return false;

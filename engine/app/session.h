@@ -54,6 +54,10 @@ void session_destroy(Session *session);
 // Loads a level (.toml, .gltf, .glb) named on the command line. On failure the old level stays and
 // session->diagnostics tell why (they are not printed here).
 bool session_load(Session *session, const char *path);
+// Fills an empty world (all components registered) from code instead of text; the rest goes as for a
+// level: player, derived columns, collision, on_load. False if fill says so: the old level stays.
+typedef bool (*SessionFill)(World *world, AssetStore *assets, void *user);
+bool session_fill(Session *session, SessionFill fill, void *user);
 // Loads the same level again if one of its files changed on disk; the player keeps place and view.
 // Returns 0 nothing changed, 1 reloaded, -1 errors (the old level stays).
 int session_poll_reload(Session *session);
