@@ -126,7 +126,7 @@ extern const char *const shape_names[SHAPE_COUNT];
 typedef struct ShapeDesc {
     Shape shape;
     u32 segments;   // around; 0 = 32 (plane: subdivisions per side, 0 = 1)
-    u32 rings;      // along; 0 = segments / 2
+    u32 rings;      // along; 0 = segments / 2 (cone, cylinder: 1)
     f32 tube;       // torus: tube radius, 0 = 0.2
     f32 uv_repeat;  // texture repeats, 0 = 1
     bool inverted;  // faces look inwards
@@ -148,7 +148,8 @@ u32 asset_load_texture(AssetStore *store, const FileRoot *root, const char *path
 const char *asset_texture_path(const AssetStore *store, u32 texture);
 
 // Copies raw data into the store (captures put meshes and textures back this way). Ids, 0 at a
-// limit. The caller has checked indices < vertex_count and sizes.
+// limit. The caller has checked indices < vertex_count and sizes. with_mips: rgba is level 0 alone
+// and the chain behind it is made here, always the same for the same level 0.
 u32 asset_add_mesh(AssetStore *store, const MeshVertex *vertices, u32 vertex_count,
                    const u32 *indices, u32 index_count);
 u32 asset_add_texture(AssetStore *store, const u8 *rgba, u32 width, u32 height, TextureKind kind,
