@@ -2,6 +2,7 @@
 // Data in: a ToolSpec (table of options with their targets) and argv. Data out: filled targets,
 // positional arguments, or a message with a suggestion; --help from the same table.
 // Called by: every command. Does not: abbreviate option names, read the environment.
+#include "../engine/level/suggest.h"
 #include "tool.h"
 #include <errno.h>
 #include <math.h>
@@ -10,9 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define OPTIONS_CAP     64
-#define HELP_COLUMN     28
-#define WORD_LENGTH_CAP 64 // of the edit distance; longer words are compared by their beginning
+#define OPTIONS_CAP 64
+#define HELP_COLUMN 28
 
 int tool_fail(int code, const char *command, const char *format, ...) {
     char text[2048];
@@ -24,42 +24,10 @@ int tool_fail(int code, const char *command, const char *format, ...) {
     return code;
 }
 
-// --- suggestions ---
-
-// Edits (insert, delete, replace, swap neighbours) from one word to the other.
-static u32 edit_distance(const char *a, const char *b) {
-    u32 a_length = (u32)MIN(strlen(a), WORD_LENGTH_CAP);
-    u32 b_length = (u32)MIN(strlen(b), WORD_LENGTH_CAP);
-    u32 rows[3][WORD_LENGTH_CAP + 1];
-    u32 *before = rows[0], *last = rows[1], *now = rows[2];
-    for (u32 j = 0; j <= b_length; j++) last[j] = j;
-    for (u32 i = 1; i <= a_length; i++) {
-        now[0] = i;
-        for (u32 j = 1; j <= b_length; j++) {
-            u32 replaced = last[j - 1] + (a[i - 1] != b[j - 1]);
-            u32 best = MIN(replaced, MIN(last[j], now[j - 1]) + 1);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                best = MIN(best, before[j - 2] + 1);
-            now[j] = best;
-        }
-        u32 *spare = before;
-        before = last, last = now, now = spare;
-    }
-    return last[b_length];
-}
-
 const char *tool_suggest(const char *wrong, const char *const *words, u32 count) {
-    const char *best = NULL;
-    u32 length = (u32)strlen(wrong);
-    u32 best_distance = length <= 3 ? 2 : 1 + length / 3; // exclusive
-    if (length < 2) return NULL;
-    for (u32 i = 0; i < count; i++) {
-        u32 distance = edit_distance(wrong, words[i]);
-        // A beginning is a good guess however much is missing.
-        if (length >= 3 && strncmp(words[i], wrong, length) == 0) distance = 1;
-        if (distance < best_distance) best_distance = distance, best = words[i];
-    }
-    return best;
+    Suggestion suggestion = suggest_begin(wrong);
+    for (u32 i = 0; i < count; i++) suggest_offer(&suggestion, words[i]);
+    return suggestion.best;
 }
 
 // --- the table with the common options ---
@@ -200,7 +168,7 @@ static ToolParse report_unknown(const ToolSpec *spec, const OptionTable *table,
                                 const char *argument, u64 length) {
     const char *names[OPTIONS_CAP];
     for (u32 i = 0; i < table->count; i++) names[i] = table->rows[i].name;
-    char name[WORD_LENGTH_CAP + 1];
+    char name[SUGGEST_WORD_MAX + 1];
     const char *bare = argument + strspn(argument, "-");
     snprintf(name, sizeof name, "%.*s", (int)(length - (u64)(bare - argument)), bare);
     const char *near = tool_suggest(name, names, table->count);

@@ -5,6 +5,7 @@
 #include "../engine/base/log.h"
 #include "tool.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const ToolCommand *const commands[] = {
@@ -28,7 +29,8 @@ static void print_help(void) {
 }
 
 void tool_begin(const ToolCommon *common) {
-    if (common->quiet || common->json) log_set_level(LOG_SEVERITY_WARNING);
+    // What the environment asks for wins.
+    if ((common->quiet || common->json) && !getenv("LUZ_LOG")) log_set_level(LOG_SEVERITY_WARNING);
     jobs_start(common->threads);
 }
 
