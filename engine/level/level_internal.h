@@ -245,7 +245,7 @@ bool level_read_string(LevelReader *reader, const TomlNode *node, const char *la
 // Three numbers, or one for all of them if takes_scalar.
 bool level_read_vec3(LevelReader *reader, const TomlNode *node, const char *label, f64 limit,
                      Vec3 *out);
-// A name: 1 to LEVEL_NAME_MAX bytes.
+// A name: one line of 1 to LEVEL_NAME_MAX bytes ("a/b": twice that).
 bool level_read_name(LevelReader *reader, const TomlNode *node, const char *label,
                      const char **out);
 // A path that stays below the root, of a file that is there; it is added to info->files.
@@ -299,8 +299,5 @@ void level_spawn_all_drawables(LevelReader *reader, TomlPlace place);
 
 // A .gltf or .glb file as a level.
 void level_read_gltf(LevelReader *reader, const char *path);
-
-// A value of a column as level text, exact: the same bits come back. Shared by write and schema.
-void level_format_number(f64 value, bool is_f32, char *out, u64 out_cap);
 
 #endif

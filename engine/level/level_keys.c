@@ -3,7 +3,6 @@
 // "position[2]" are one key of three columns. Called by reader, writer and schema, so that the three
 // cannot disagree. Does not: know any component by name, except those that entity tables cannot have.
 #include "level_internal.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,15 +89,4 @@ void *level_grow(Arena *arena, void *array, u32 count, u32 *cap, u64 element_siz
     if (count > 0) memcpy(copy, array, count * element_size);
     *cap = larger;
     return copy;
-}
-
-void level_format_number(f64 value, bool is_f32, char *out, u64 out_cap) {
-    if (!is_f32) {
-        snprintf(out, out_cap, "%.0f", value);
-        return;
-    }
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(out, out_cap, "%.*g", digits, value);
-        if ((f32)strtod(out, NULL) == (f32)value) return;
-    }
 }

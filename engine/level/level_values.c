@@ -119,8 +119,10 @@ bool level_read_name(LevelReader *reader, const TomlNode *node, const char *labe
     const char *name;
     if (!level_read_string(reader, node, label, &name)) return false;
     u64 size = strlen(name);
+    // A model's material has the names of both.
+    u64 max = strchr(name, '/') ? LEVEL_NAME_MAX * 2 + 1 : LEVEL_NAME_MAX;
     const char *problem = size == 0                 ? "must not be empty"
-                          : size > LEVEL_NAME_MAX   ? "is longer than 127 bytes"
+                          : size > max              ? "is too long (127 bytes)"
                           : strpbrk(name, "\n\r\t") ? "must be one line"
                                                     : NULL;
     if (problem) {
