@@ -126,7 +126,7 @@ typedef struct GpuShader {
     char name[GPU_LABEL_CAP];
     const u32 *words;
     u32 byte_count;
-    u32 *owned;         // malloc'd words of a reload (or a patched copy)
+    u32 *owned;         // malloc'd words of a reload
     u64 stamp;          // newest source stamp that `words` was made from; 0 = embedded
     u64 refused_stamp;  // newest source stamp that did not compile
     bool is_broken, is_changed;

@@ -45,18 +45,8 @@ static bool shader_module(Gpu *gpu, const GpuShader *shader, VkShaderModule *mod
         .codeSize = shader->byte_count,
         .pCode = shader->words,
     };
-    // Built for 1.3 means SPIR-V 1.6; a 1.2 device takes 1.5. Nothing of 1.6 is used besides the
-    // terminating form of `discard`, which drivers of that age accept under the older number.
-    u32 *copy = NULL;
-    if (gpu->is_vulkan_12 && shader->byte_count > 8 && shader->words[1] > 0x00010500u &&
-        (copy = malloc(shader->byte_count))) {
-        memcpy(copy, shader->words, shader->byte_count);
-        copy[1] = 0x00010500u;
-        info.pCode = copy;
-    }
     bool ok =
         GPU_CHECK(gpu, shader->name, gpu->vk.vkCreateShaderModule(gpu->device, &info, NULL, module));
-    free(copy);
     if (ok)
         gpu_name_object(gpu, VK_OBJECT_TYPE_SHADER_MODULE, GPU_HANDLE(*module), "%s", shader->name);
     return ok;

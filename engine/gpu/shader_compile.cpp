@@ -67,8 +67,8 @@ bool stage_of_name(const char *name, EShLanguage *stage) {
     return true;
 }
 
-bool compile(const char *name, const ShaderSources *sources, std::vector<u32> &words, char *error,
-             u64 error_cap) {
+bool compile(const char *name, const ShaderSources *sources, u32 spirv_version,
+             std::vector<u32> &words, char *error, u64 error_cap) {
     EShLanguage stage;
     Bytes text;
     if (!stage_of_name(name, &stage)) {
@@ -87,8 +87,11 @@ bool compile(const char *name, const ShaderSources *sources, std::vector<u32> &w
     glslang::TShader shader(stage);
     shader.setStringsWithLengthsAndNames(strings, lengths, names, 1);
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
-    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+    const bool is_13 = spirv_version >= glslang::EShTargetSpv_1_6;
+    shader.setEnvClient(glslang::EShClientVulkan,
+                        is_13 ? glslang::EShTargetVulkan_1_3 : glslang::EShTargetVulkan_1_2);
+    shader.setEnvTarget(glslang::EShTargetSpv,
+                        is_13 ? glslang::EShTargetSpv_1_6 : glslang::EShTargetSpv_1_5);
     shader.setDebugInfo(true);
     Includer includer(sources);
     if (!shader.parse(GetDefaultResources(), 110, false, messages, includer)) {
@@ -110,15 +113,15 @@ bool compile(const char *name, const ShaderSources *sources, std::vector<u32> &w
 
 } // namespace
 
-bool shader_compile(const char *name, const ShaderSources *sources, u32 **words, u32 *byte_count,
-                    char *error, u64 error_cap) {
+bool shader_compile(const char *name, const ShaderSources *sources, u32 spirv_version, u32 **words,
+                    u32 *byte_count, char *error, u64 error_cap) {
     error[0] = 0;
     // Reference-counted by the library; the process keeps what it builds only while compiling.
     glslang::InitializeProcess();
     bool ok = false;
     try {
         std::vector<u32> result;
-        ok = compile(name, sources, result, error, error_cap);
+        ok = compile(name, sources, spirv_version, result, error, error_cap);
         if (ok) {
             *byte_count = static_cast<u32>(result.size() * sizeof(u32));
             *words = static_cast<u32 *>(malloc(*byte_count));

@@ -1,5 +1,5 @@
 // shader_compile.h: GLSL to SPIR-V while the program runs, the same as the build does it
-// (glslangValidator -V --target-env vulkan1.3 -g).
+// (glslangValidator -V --target-env vulkan1.x -g).
 //
 // For development only: a hostile shader can make the compiler use all memory. Sources come through
 // a function of the caller, so this knows no files.
@@ -19,10 +19,12 @@ typedef struct ShaderSources {
     void *user;
 } ShaderSources;
 
-// The stage comes from the name's ending (.vert, .frag, .comp). True: *words is malloc'd, the caller
-// frees it. False: `error` says why, one "file:line: text" a line.
-bool shader_compile(const char *name, const ShaderSources *sources, u32 **words, u32 *byte_count,
-                    char *error, u64 error_cap);
+// The stage comes from the name's ending (.vert, .frag, .comp); spirv_version is the second word of
+// the module that is to be replaced (0x00010600 = what Vulkan 1.3 brought), so that the result fits
+// where the build's fitted. True: *words is malloc'd, the caller frees it. False: `error` says why,
+// one "file:line: text" a line.
+bool shader_compile(const char *name, const ShaderSources *sources, u32 spirv_version, u32 **words,
+                    u32 *byte_count, char *error, u64 error_cap);
 
 #ifdef __cplusplus
 }

@@ -65,7 +65,8 @@ static bool shader_recompile(Gpu *gpu, GpuShader *shader, SourceReader *reader, 
     char error[GPU_SHADER_ERROR_CAP];
     u32 *words, byte_count;
     ShaderSources sources = {source_read, reader};
-    if (!shader_compile(shader->name, &sources, &words, &byte_count, error, sizeof error)) {
+    if (!shader_compile(shader->name, &sources, shader->words[1], &words, &byte_count, error,
+                        sizeof error)) {
         shader->refused_stamp = stamp;
         shader->is_broken = true;
         snprintf(gpu->shader_error, sizeof gpu->shader_error, "%s", error);
