@@ -17,8 +17,8 @@ bool headless_open(Headless *headless, const ToolCommon *common) {
                                           .accurate_timers = true});
     if (!headless->gpu) return false;
     const GpuInfo *info = gpu_info(headless->gpu);
-    snprintf(headless->device, sizeof headless->device, "%s / %s %s", info->device_name,
-             info->driver_name, info->driver_info);
+    snprintf(headless->device, sizeof headless->device, "%s / %s", info->device_name,
+             info->driver_info);
     headless->renderer = renderer_create(headless->gpu);
     if (headless->renderer) return true;
     headless_close(headless);

@@ -1,0 +1,58 @@
+// replay_frame.c: `luz replay FRAME.luzf`: draws one captured frame, in any path.
+// Data in: a frame file, settings to change. Data out: picture, hash.
+// Does not: rebuild the packet: settings that shape it (light_limit, culling, scale) stay as
+// captured.
+#include "replay.h"
+#include <stdio.h>
+
+static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
+                      const AssetStore *store, const Packet *packet, Arena *arena,
+                      Headless *headless) {
+    if (!headless_open(headless, common)) return TOOL_ENVIRONMENT;
+    RenderImage image;
+    if (!renderer_set_assets(headless->renderer, store) ||
+        !renderer_warm_up_path(headless->renderer, packet) ||
+        !renderer_render_image(headless->renderer, packet, arena, &image))
+        return TOOL_ENVIRONMENT;
+    if (options->out &&
+        !image_write_png(options->out, image.rgba, image.width_px, image.height_px, 4))
+        return TOOL_ENVIRONMENT;
+    char word[64];
+    settings_word("path", packet->settings.path, word, sizeof word);
+    u32 messages = gpu_validation_message_count(headless->gpu);
+    if (common->json) {
+        Json json = json_begin();
+        json_open_object(&json, NULL);
+        json_text(&json, "frame", options->file);
+        json_text(&json, "device", headless->device);
+        json_text(&json, "path", word);
+        json_u64(&json, "width", image.width_px);
+        json_u64(&json, "height", image.height_px);
+        json_u64(&json, "tick", packet->tick);
+        json_hash(&json, "image_hash", image.hash);
+        json_u64(&json, "validation_messages", messages);
+        json_close(&json);
+        json_print(&json);
+        json_free(&json);
+    } else if (!common->quiet) {
+        printf("%s: %ux%u, tick %u, path %s, image hash %016llx\n", options->file, image.width_px,
+               image.height_px, packet->tick, word, (unsigned long long)image.hash);
+    }
+    if (messages) return tool_fail(TOOL_DIFFERENT, "replay", "%u validation messages", messages);
+    return TOOL_OK;
+}
+
+int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *arena) {
+    AssetStore store;
+    const Packet *packet;
+    if (!frame_file_read(options->file, arena, &store, &packet)) return TOOL_DIFFERENT;
+    Packet *own = (Packet *)(uintptr_t)packet; // just read into our arena
+    int result = TOOL_USAGE;
+    if (headless_settings(&own->settings, options->path, options->view, &options->sets)) {
+        Headless headless = {0};
+        result = draw_frame(options, common, &store, packet, arena, &headless);
+        headless_close(&headless);
+    }
+    asset_store_destroy(&store);
+    return result;
+}
