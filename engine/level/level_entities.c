@@ -188,6 +188,7 @@ static void settle_local_names(LevelReader *reader, LevelPrefab *prefab, u32 ind
         if (blueprint->parent == UINT32_MAX) continue;
         LevelReference *reference = &reader->references[blueprint->parent];
         if (reference->local != UINT32_MAX) continue;
+        reference->is_reported = true;
         Suggestion suggestion = suggest_begin(reference->name);
         for (u32 k = 0; k < local.count; k++) suggest_offer(&suggestion, local.list[k].text);
         char hint[192];

@@ -240,9 +240,11 @@ bool level_load(const FileRoot *root, const char *path, World *world, AssetStore
     info->entity_count = (u32)reader.entity_total;
     level_sort_diagnostics(diagnostics);
     arena_destroy(&reader.scratch);
-    if (diagnostics->error_count > 0)
+    const Diagnostic *first = diagnostics->items;
+    while (first < diagnostics->items + diagnostics->count && !first->is_error) first++;
+    if (first < diagnostics->items + diagnostics->count)
         LOG(LEVEL_ERROR, "%s: %u errors, first at line %u: %s", reader.file,
-            diagnostics->error_count, diagnostics->items[0].line, diagnostics->items[0].text);
+            diagnostics->error_count, first->line, first->text);
     return diagnostics->error_count == 0;
 }
 

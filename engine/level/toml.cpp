@@ -55,6 +55,9 @@ TomlPlace place_of(const Source &source, const toml::source_region &region) {
     if (place.line == 0) place.line = 1;
     if (place.column == 0) place.column = 1;
     place.column = byte_column(source, place.line, place.column);
+    if (place.line < source.line_first.size()) // the end of the file counts as behind its last line
+        place.column = std::min(place.column, static_cast<u32>(source.line_first[place.line] -
+                                                               source.line_first[place.line - 1]));
     u32 end = place.column + 1;
     if (region.end.line == region.begin.line) {
         end = byte_column(source, region.end.line, region.end.column);
