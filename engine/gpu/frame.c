@@ -82,8 +82,12 @@ void gpu_wait_idle(Gpu *gpu) {
     // Inside a frame its own commands stay what they are: recorded, not submitted.
     gpu_uploads_flush(gpu);
     if (!gpu_wait_value(gpu, gpu->submitted)) return;
-    if (!gpu->is_recording) gpu_destroy_stamp(gpu, gpu->submitted);
-    gpu_destroy_collect(gpu, gpu->submitted);
+    if (gpu->is_recording) {
+        gpu_destroy_collect(gpu, gpu->submitted);
+        return;
+    }
+    gpu_destroy_stamp(gpu, gpu->submitted);
+    gpu_destroy_collect(gpu, UINT64_MAX); // nothing is under way or being recorded
 }
 
 // --- Submits ---
