@@ -163,7 +163,9 @@ configure() {
             esac
             case $source in
             engine/*) engine+=" $object" ;;
-            game/*) game+=" $object" ;;
+            game/*) game+=" $object"
+                # Toolbox and tests know the game's components (game/project.c), not its main.
+                [ "$source" = game/main.c ] || { tools+=" $object"; tests+=" $object"; } ;;
             tools/make_assets/*) assets+=" $object" ;;
             tools/*) tools+=" $object" ;;
             tests/*) tests+=" $object" ;;

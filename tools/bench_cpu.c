@@ -133,7 +133,7 @@ bool bench_grid(Bench *bench, const char *id) {
 
 bool bench_packet(Bench *bench, const char *id) {
     Session session;
-    if (!session_create(&session, &(SessionDesc){0})) return false;
+    if (!session_create(&session, tool_session())) return false;
     bool ok = headless_load(&session, bench->level, &bench->common);
     enum { TICK, WHOLE, CULL, LIGHTS, GRID, PACK, PARTS };
     static const char *const names[PARTS] = {"one tick",           "packet",
@@ -172,7 +172,7 @@ bool bench_level_load(Bench *bench, const char *id) {
     bool ok = true;
     for (u32 i = 0; ok && i < (bench->quick ? 2u : 7u); i++) {
         Session session;
-        if (!session_create(&session, &(SessionDesc){0})) return false;
+        if (!session_create(&session, tool_session())) return false;
         f64 start = clock_now_ms();
         ok = session_load(&session, bench->level);
         samples_add(&samples, clock_now_ms() - start);

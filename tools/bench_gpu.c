@@ -16,7 +16,7 @@ typedef struct GpuBench {
 
 static bool gpu_bench_begin(GpuBench *run, Bench *bench, const char *level, u32 width, u32 height) {
     *run = (GpuBench){.bench = bench};
-    if (!session_create(&run->session, &(SessionDesc){0})) return false;
+    if (!session_create(&run->session, tool_session())) return false;
     if (!headless_load(&run->session, level, &bench->common) ||
         !renderer_set_assets(bench->headless.renderer, &run->session.assets)) {
         session_destroy(&run->session);

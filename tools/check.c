@@ -37,7 +37,7 @@ static void json_diagnostics(Json *json, const char *path, const Session *sessio
 static bool check_level(const char *path, const ToolCommon *common, Json *json,
                         CheckCounts *counts) {
     Session session;
-    if (!session_create(&session, &(SessionDesc){0})) return false;
+    if (!session_create(&session, tool_session())) return false;
     bool ok = session_load(&session, path);
     const Diagnostics *diagnostics = session.diagnostics;
     counts->levels++;

@@ -31,6 +31,11 @@ void headless_close(Headless *headless) {
     *headless = (Headless){0};
 }
 
+const SessionDesc *tool_session(void) {
+    static const SessionDesc engine_alone;
+    return &luz_project ? &luz_project : &engine_alone;
+}
+
 bool headless_load(Session *session, const char *path, const ToolCommon *common) {
     bool ok = session_load(session, path);
     const Diagnostics *diagnostics = session->diagnostics;

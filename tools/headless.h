@@ -18,6 +18,8 @@ bool headless_open(Headless *headless, const ToolCommon *common);
 void headless_close(Headless *headless);
 
 // --- Level ---
+// The project's components and systems (luz_project), or none.
+const SessionDesc *tool_session(void);
 // Prints diagnostics on stderr: all of a failed load, warnings of a good one unless quiet.
 bool headless_load(Session *session, const char *path, const ToolCommon *common);
 // NULL (the player's eyes) or a name: as asked, else "main", else the first camera with a name.

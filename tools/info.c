@@ -127,7 +127,7 @@ static void info_tables(Facts *facts, const World *world) {
 
 static int info_level(const char *path, const ToolCommon *common, Facts *facts) {
     Session session;
-    if (!session_create(&session, &(SessionDesc){0})) return TOOL_ENVIRONMENT;
+    if (!session_create(&session, tool_session())) return TOOL_ENVIRONMENT;
     bool ok = headless_load(&session, path, common);
     if (ok) {
         fact_text(facts, "level", path);

@@ -1,6 +1,5 @@
 // record.c: `luz record`: a recording made without a window, by a script of inputs.
-// Data in: a level, a script. Data out: a .luzr file. Does not: record the game's own components
-// (`luz_demo` records its levels itself).
+// Data in: a level, a script. Data out: a .luzr file. Does not: know HUDs: its pictures have none.
 #include "../engine/base/log.h"
 #include "../engine/capture/capture.h"
 #include "headless.h"
@@ -161,8 +160,7 @@ static int record_run(int argc, char **argv) {
     int result = TOOL_ENVIRONMENT;
     Arena arena;
     if (arena_create(&arena, "record", RECORD_ARENA_CAP)) {
-        if (session_create(&record.session, &(SessionDesc){0}))
-            result = record_level(&record, &arena);
+        if (session_create(&record.session, tool_session())) result = record_level(&record, &arena);
         headless_close(&record.headless);
         session_destroy(&record.session);
         arena_destroy(&arena);

@@ -1,7 +1,7 @@
 // replay.c: `luz replay`: plays a recording headless, as fast as it goes, and checks every tick.
 // Data in: a .luzr (or .luzf: replay_frame.c), the level that it names. Data out: equal, or the
-// first tick, table, column and row that differ; pictures of what differs. Does not: play
-// recordings of a game's own components (the game's program does).
+// first tick, table, column and row that differ; pictures of what differs. Does not: draw
+// HUDs: pictures of a recording that had one differ.
 #include "../engine/base/file.h"
 #include "../engine/base/log.h"
 #include "../engine/capture/image_compare.h"
@@ -274,7 +274,7 @@ static int replay_run(int argc, char **argv) {
     if (arena_create(&arena, "replay", REPLAY_ARENA_CAP)) {
         if (dot && strcmp(dot, ".luzf") == 0)
             result = replay_frame(o, &replay.common, &arena);
-        else if (session_create(&replay.session, &(SessionDesc){0}))
+        else if (session_create(&replay.session, tool_session()))
             result = replay_recording(&replay, &arena);
         headless_close(&replay.headless);
         session_destroy(&replay.session);

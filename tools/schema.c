@@ -1,9 +1,8 @@
 // schema.c: `luz schema`: the JSON schema of the level format, for editors.
-// Data in: the engine's components. Data out: draft 2020-12 on stdout or in a file.
-// Does not: know a game's components; a game publishes its own schema through the engine.
+// Data in: the engine's components and the project's. Data out: draft 2020-12 on stdout or in a
+// file. Does not: know models or names; `luz check` does.
 #include "../engine/base/file.h"
-#include "../engine/level/level.h"
-#include "tool.h"
+#include "headless.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -49,6 +48,9 @@ static int schema_run(int argc, char **argv) {
     int result = TOOL_ENVIRONMENT;
     if (arena_create(&arena, "schema", SCHEMA_ARENA_CAP)) {
         World *world = world_create(0);
+        const SessionDesc *project = tool_session();
+        for (u32 i = 0; i < project->component_count; i++)
+            world_register_component(world, project->components[i]);
         result = schema_write(out, check, level_schema(world, &arena), &arena);
         world_destroy(world);
         arena_destroy(&arena);

@@ -338,7 +338,7 @@ static int shot_run(int argc, char **argv) {
     if (!o->frames && shot.common.json) o->frame_count = STATS_FRAMES;
     tool_begin(&shot.common);
     int result = TOOL_ENVIRONMENT;
-    if (session_create(&shot.session, &(SessionDesc){0})) result = shot_draw(&shot);
+    if (session_create(&shot.session, tool_session())) result = shot_draw(&shot);
     headless_close(&shot.headless);
     session_destroy(&shot.session);
     frame_times_free(&shot.times);

@@ -26,6 +26,11 @@ typedef struct SessionDesc {
     void (*on_load)(Session *session, void *user);
 } SessionDesc;
 
+// The project's own components and systems, for the toolbox: a game that defines this has its levels
+// checked, drawn, recorded and replayed by `luz` as well as by itself (build.sh links all of the
+// game but its main.c into `luz`). Weak: without a game its address is NULL.
+extern const SessionDesc luz_project __attribute__((weak));
+
 struct Session {
     SessionDesc desc;
     Arena frame, scratch;    // frame: reset by session_packet's caller (session_frame_begin)

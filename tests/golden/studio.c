@@ -18,7 +18,7 @@ void studio_open(Studio *studio, const char *level) {
     // Tests count on the software driver: it is the one that every machine has.
     setenv("VK_DRIVER_FILES", "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json", 0);
     assert_true(arena_create(&studio->images, "images", GIB(1)));
-    assert_true(session_create(&studio->session, &(SessionDesc){0}));
+    assert_true(session_create(&studio->session, &luz_project));
     if (!session_load(&studio->session, level)) {
         if (studio->session.diagnostics) diagnostics_print(studio->session.diagnostics, stderr);
         fail_msg("%s does not load", level);
