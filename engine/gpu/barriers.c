@@ -4,9 +4,9 @@
 // upload.c and swapchain.c. Does not track state: the caller says what was before (the pass table
 // knows it for good, and a test checks that table).
 //
-// A barrier from or to a read covers every read usage of the same layout, not just the named one. So
-// after write -> read, further reads in other stages need no barrier (they were made visible too),
-// and read -> write waits for all of them. This is why gpu_usage_needs_barrier may say no for
+// A barrier from or to a read covers every read usage of the same layout, not just the named one.
+// So after write -> read, further reads in other stages need no barrier (they were made visible
+// too), and read -> write waits for all of them. This is why gpu_usage_needs_barrier may say no for
 // read -> read.
 #include "gpu_internal.h"
 
@@ -31,8 +31,7 @@ const GpuUsageInfo gpu_usage_table[GPU_USAGE_COUNT] = {
                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, true},
-    [GPU_USAGE_DEPTH_TEST] = {"depth test",
-                              DEPTH_STAGES | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+    [GPU_USAGE_DEPTH_TEST] = {"depth test", DEPTH_STAGES | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                               VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                                   VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, false},
@@ -48,15 +47,17 @@ const GpuUsageInfo gpu_usage_table[GPU_USAGE_COUNT] = {
                                    VK_IMAGE_LAYOUT_GENERAL, true},
     [GPU_USAGE_STORAGE_READ_COMPUTE] = {"storage read by compute",
                                         VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                        VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL,
-                                        false},
+                                        VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                                        VK_IMAGE_LAYOUT_GENERAL, false},
     [GPU_USAGE_READ_VERTEX] = {"read by drawing",
                                VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | SHADER_STAGES,
                                VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
-                                   VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT,
+                                   VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT |
+                                   VK_ACCESS_2_INDEX_READ_BIT,
                                VK_IMAGE_LAYOUT_UNDEFINED, false},
     [GPU_USAGE_INDIRECT] = {"indirect", VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                            VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, false},
+                            VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                            false},
     [GPU_USAGE_COPY_SOURCE] = {"copy source", VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                false},
@@ -87,8 +88,8 @@ bool gpu_usage_needs_barrier(GpuUsage from, GpuUsage to) {
 }
 
 // Stages and accesses of a usage, widened to all reads of its kind if it is a read.
-static void usage_scope(GpuUsage usage, bool is_texture, bool is_depth, VkPipelineStageFlags2 *stages,
-                        VkAccessFlags2 *access) {
+static void usage_scope(GpuUsage usage, bool is_texture, bool is_depth,
+                        VkPipelineStageFlags2 *stages, VkAccessFlags2 *access) {
     const GpuUsageInfo *info = &gpu_usage_table[usage];
     *stages = info->stages;
     *access = info->access;
@@ -142,8 +143,8 @@ void gpu_record_full_barrier(Gpu *gpu, VkCommandBuffer buffer) {
         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
         .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
         .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
-        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT |
-                         VK_ACCESS_2_HOST_READ_BIT,
+        .dstAccessMask =
+            VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_HOST_READ_BIT,
     };
     gpu_record_barriers(gpu, buffer, &barrier, NULL, 0);
 }
@@ -178,5 +179,6 @@ void gpu_cmd_barriers(GpuCommands *cmd, const GpuBarrier *barriers, u32 count) {
             memory.dstAccessMask |= access;
         }
     }
-    gpu_record_barriers(gpu, cmd->buffer, memory.srcStageMask ? &memory : NULL, images, image_count);
+    gpu_record_barriers(gpu, cmd->buffer, memory.srcStageMask ? &memory : NULL, images,
+                        image_count);
 }

@@ -1,11 +1,11 @@
 // bindings.c: bind layouts and bind groups, that is descriptor sets.
 //
-// Data in: lists of binding kinds; lists of resources. Data out: handles. Called by the renderer when
-// it loads or resizes. Does not change a group once made: make a new one and destroy the old.
+// Data in: lists of binding kinds; lists of resources. Data out: handles. Called by the renderer
+// when it loads or resizes. Does not change a group once made: make a new one and destroy the old.
 //
-// A group that holds a DYNAMIC buffer has one set a frame slot, each with that slot's copy; the others
-// have one. Descriptor pools are added as they fill; what a pool has left is counted here, because
-// drivers differ in what they do about an exhausted pool.
+// A group that holds a DYNAMIC buffer has one set a frame slot, each with that slot's copy; the
+// others have one. Descriptor pools are added as they fill; what a pool has left is counted here,
+// because drivers differ in what they do about an exhausted pool.
 #include "gpu_internal.h"
 #include <stdlib.h>
 
@@ -71,7 +71,8 @@ static bool descriptor_pool_add(Gpu *gpu, const char *label) {
     *pool = (GpuDescriptorPool){.sets_left = POOL_SETS};
     VkDescriptorPoolSize sizes[3];
     for (u32 kind = 0; kind < 3; kind++) {
-        sizes[kind] = (VkDescriptorPoolSize){descriptor_type((GpuBindingKind)kind), POOL_DESCRIPTORS};
+        sizes[kind] =
+            (VkDescriptorPoolSize){descriptor_type((GpuBindingKind)kind), POOL_DESCRIPTORS};
         pool->left[kind] = POOL_DESCRIPTORS;
     }
     VkDescriptorPoolCreateInfo info = {
@@ -84,8 +85,8 @@ static bool descriptor_pool_add(Gpu *gpu, const char *label) {
     if (!GPU_CHECK(gpu, label,
                    gpu->vk.vkCreateDescriptorPool(gpu->device, &info, NULL, &pool->pool)))
         return false;
-    gpu_name_object(gpu, VK_OBJECT_TYPE_DESCRIPTOR_POOL, GPU_HANDLE(pool->pool), "descriptor pool %u",
-                    gpu->descriptor_pool_count);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_DESCRIPTOR_POOL, GPU_HANDLE(pool->pool),
+                    "descriptor pool %u", gpu->descriptor_pool_count);
     gpu->descriptor_pool_count++;
     return true;
 }
@@ -172,8 +173,8 @@ static void set_write(Gpu *gpu, const GpuBindGroupDesc *desc, const GpuBindLayou
         }
         const GpuTextureItem *texture = gpu_texture_get(gpu, binding->texture);
         if (layout->kinds[i] == GPU_BINDING_STORAGE_TEXTURE) {
-            images[i] =
-                (VkDescriptorImageInfo){VK_NULL_HANDLE, texture->target_view, VK_IMAGE_LAYOUT_GENERAL};
+            images[i] = (VkDescriptorImageInfo){VK_NULL_HANDLE, texture->target_view,
+                                                VK_IMAGE_LAYOUT_GENERAL};
         } else {
             const GpuSamplerItem *sampler = gpu_pool_get(&gpu->samplers, binding->sampler.id);
             images[i] = (VkDescriptorImageInfo){
@@ -192,7 +193,8 @@ GpuBindGroup gpu_create_bind_group(Gpu *gpu, const GpuBindGroupDesc *desc) {
         const GpuBufferItem *buffer = gpu_buffer_get(gpu, desc->bindings[i].buffer);
         if (buffer->kind == GPU_BUFFER_DYNAMIC) set_count = gpu->frame_count;
         if (buffer->size > gpu->info.max_storage_buffer_size) {
-            LOG(GPU_LIMIT, "bind group \"%s\": buffer \"%s\" of %.1f MiB, shaders here see %.1f MiB",
+            LOG(GPU_LIMIT,
+                "bind group \"%s\": buffer \"%s\" of %.1f MiB, shaders here see %.1f MiB",
                 desc->label, buffer->pool.label, (f64)buffer->size / (f64)MIB(1),
                 (f64)gpu->info.max_storage_buffer_size / (f64)MIB(1));
             return (GpuBindGroup){0};

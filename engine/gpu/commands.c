@@ -1,13 +1,14 @@
 // commands.c: what a frame records.
 //
-// Data in: handles and numbers of one frame. Data out: Vulkan commands in the frame's command buffer.
-// Called by the passes. Does not keep state beyond the bound pipeline's layout, and does not order
-// anything: barriers are the caller's (gpu_cmd_barriers).
+// Data in: handles and numbers of one frame. Data out: Vulkan commands in the frame's command
+// buffer. Called by the passes. Does not keep state beyond the bound pipeline's layout, and does
+// not order anything: barriers are the caller's (gpu_cmd_barriers).
 #include "gpu_internal.h"
 
 // --- Rendering ---
 
-static VkRenderingAttachmentInfo attachment(const Gpu *gpu, const GpuTarget *target, bool is_swapchain) {
+static VkRenderingAttachmentInfo attachment(const Gpu *gpu, const GpuTarget *target,
+                                            bool is_swapchain) {
     const GpuTextureItem *texture = is_swapchain ? NULL : gpu_texture_get(gpu, target->texture);
     VkRenderingAttachmentInfo info = {
         .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
@@ -132,8 +133,8 @@ void gpu_cmd_draw(GpuCommands *cmd, u32 vertex_count, u32 instance_count, u32 fi
 
 void gpu_cmd_draw_indexed(GpuCommands *cmd, u32 index_count, u32 instance_count, u32 first_index,
                           i32 vertex_offset, u32 first_instance) {
-    cmd->gpu->vk.vkCmdDrawIndexed(cmd->buffer, index_count, instance_count, first_index, vertex_offset,
-                                  first_instance);
+    cmd->gpu->vk.vkCmdDrawIndexed(cmd->buffer, index_count, instance_count, first_index,
+                                  vertex_offset, first_instance);
 }
 
 void gpu_cmd_dispatch(GpuCommands *cmd, u32 x, u32 y, u32 z) {
@@ -157,15 +158,16 @@ void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuf
         .imageSubresource = {gpu_format_aspect(from->format), 0, 0, 1},
         .imageExtent = {from->width, from->height, from->depth},
     };
-    cmd->gpu->vk.vkCmdCopyImageToBuffer(cmd->buffer, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                        to->buffer, 1, &region);
+    cmd->gpu->vk.vkCmdCopyImageToBuffer(
+        cmd->buffer, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &region);
 }
 
 // --- Labels ---
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name) {
     if (!cmd->gpu->has_debug_utils) return;
-    VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
+    VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                  .pLabelName = name};
     vkCmdBeginDebugUtilsLabelEXT(cmd->buffer, &label);
 }
 

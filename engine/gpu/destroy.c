@@ -1,9 +1,9 @@
 // destroy.c: objects die when no submitted work can read them any more.
 //
-// Data in: Vulkan objects whose owner let go. Data out: none. A queue in the order of letting go: an
-// entry gets the timeline value of the next submit that may still use it (the frame being recorded, or
-// the next one), and is freed when that value is reached. Called by whatever destroys; collected
-// at each frame begin and wait.
+// Data in: Vulkan objects whose owner let go. Data out: none. A queue in the order of letting go:
+// an entry gets the timeline value of the next submit that may still use it (the frame being
+// recorded, or the next one), and is freed when that value is reached. Called by whatever destroys;
+// collected at each frame begin and wait.
 #include "gpu_internal.h"
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +13,21 @@ static void doomed_free(Gpu *gpu, const GpuDoomed *doomed) {
     u64 handle = doomed->handle;
 #define OBJECT(Type) ((Type)(uintptr_t)handle)
     switch (doomed->type) {
-    case VK_OBJECT_TYPE_BUFFER: gpu->vk.vkDestroyBuffer(device, OBJECT(VkBuffer), NULL); break;
-    case VK_OBJECT_TYPE_IMAGE: gpu->vk.vkDestroyImage(device, OBJECT(VkImage), NULL); break;
+    case VK_OBJECT_TYPE_BUFFER:
+        gpu->vk.vkDestroyBuffer(device, OBJECT(VkBuffer), NULL);
+        break;
+    case VK_OBJECT_TYPE_IMAGE:
+        gpu->vk.vkDestroyImage(device, OBJECT(VkImage), NULL);
+        break;
     case VK_OBJECT_TYPE_IMAGE_VIEW:
         gpu->vk.vkDestroyImageView(device, OBJECT(VkImageView), NULL);
         break;
-    case VK_OBJECT_TYPE_SAMPLER: gpu->vk.vkDestroySampler(device, OBJECT(VkSampler), NULL); break;
-    case VK_OBJECT_TYPE_PIPELINE: gpu->vk.vkDestroyPipeline(device, OBJECT(VkPipeline), NULL); break;
+    case VK_OBJECT_TYPE_SAMPLER:
+        gpu->vk.vkDestroySampler(device, OBJECT(VkSampler), NULL);
+        break;
+    case VK_OBJECT_TYPE_PIPELINE:
+        gpu->vk.vkDestroyPipeline(device, OBJECT(VkPipeline), NULL);
+        break;
     case VK_OBJECT_TYPE_PIPELINE_LAYOUT:
         gpu->vk.vkDestroyPipelineLayout(device, OBJECT(VkPipelineLayout), NULL);
         break;
@@ -27,8 +35,11 @@ static void doomed_free(Gpu *gpu, const GpuDoomed *doomed) {
         gpu_descriptor_set_freed(gpu, doomed->descriptor_pool, doomed->layout_id,
                                  OBJECT(VkDescriptorSet));
         break;
-    case VK_OBJECT_TYPE_DEVICE_MEMORY: gpu_memory_free(gpu, doomed->allocation); break;
-    default: LUZ_ASSERT(!"an object type that nobody destroys later");
+    case VK_OBJECT_TYPE_DEVICE_MEMORY:
+        gpu_memory_free(gpu, doomed->allocation);
+        break;
+    default:
+        LUZ_ASSERT(!"an object type that nobody destroys later");
     }
 #undef OBJECT
 }
@@ -57,13 +68,16 @@ void gpu_destroy_later(Gpu *gpu, VkObjectType type, u64 handle) {
 
 void gpu_destroy_later_memory(Gpu *gpu, GpuAllocation allocation) {
     if (!allocation.block) return;
-    doomed_push(gpu,
-                (GpuDoomed){.type = VK_OBJECT_TYPE_DEVICE_MEMORY, .handle = 1, .allocation = allocation});
+    doomed_push(
+        gpu,
+        (GpuDoomed){.type = VK_OBJECT_TYPE_DEVICE_MEMORY, .handle = 1, .allocation = allocation});
 }
 
 void gpu_destroy_later_set(Gpu *gpu, VkDescriptorSet set, u32 descriptor_pool, u32 layout_id) {
-    doomed_push(gpu, (GpuDoomed){.type = VK_OBJECT_TYPE_DESCRIPTOR_SET, .handle = GPU_HANDLE(set),
-                                 .descriptor_pool = descriptor_pool, .layout_id = layout_id});
+    doomed_push(gpu, (GpuDoomed){.type = VK_OBJECT_TYPE_DESCRIPTOR_SET,
+                                 .handle = GPU_HANDLE(set),
+                                 .descriptor_pool = descriptor_pool,
+                                 .layout_id = layout_id});
 }
 
 void gpu_destroy_stamp(Gpu *gpu, u64 value) {

@@ -80,10 +80,17 @@ static DeviceChoice device_judge(Gpu *gpu, VkPhysicalDevice device, const char *
 
     *why = NULL;
     switch (properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: choice.score = 40; break;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: choice.score = 30; break;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: choice.score = 20; break;
-    default: choice.score = 10;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        choice.score = 40;
+        break;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        choice.score = 30;
+        break;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        choice.score = 20;
+        break;
+    default:
+        choice.score = 10;
     }
     if (wanted && name_contains(properties.deviceName, wanted)) choice.score += 1000;
     return choice;
@@ -109,8 +116,9 @@ bool gpu_device_pick(Gpu *gpu, const char *wanted) {
         snprintf(reasons + used, sizeof reasons - used, "; %s: %s", properties.deviceName, why);
     }
     if (best.score < 0) {
-        LOG(GPU_NONE, "none of %u Vulkan devices can be used%s: install a driver, for example "
-                      "mesa-vulkan-drivers, and check VK_DRIVER_FILES if it is set",
+        LOG(GPU_NONE,
+            "none of %u Vulkan devices can be used%s: install a driver, for example "
+            "mesa-vulkan-drivers, and check VK_DRIVER_FILES if it is set",
             count, reasons);
         return false;
     }
@@ -181,8 +189,9 @@ bool gpu_device_create(Gpu *gpu) {
     VkPhysicalDeviceFeatures2 has = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                      .pNext = &has11};
     vkGetPhysicalDeviceFeatures2(gpu->physical, &has);
-    bool has_needed = gpu->is_vulkan_12 ? rendering.dynamicRendering && synchronization.synchronization2
-                                        : has13.dynamicRendering && has13.synchronization2;
+    bool has_needed = gpu->is_vulkan_12
+                          ? rendering.dynamicRendering && synchronization.synchronization2
+                          : has13.dynamicRendering && has13.synchronization2;
     if (!has_needed) {
         LOG(GPU_NONE, "\"%s\" has no dynamic rendering or synchronization2: update its driver",
             gpu->info.device_name);
@@ -197,8 +206,9 @@ bool gpu_device_create(Gpu *gpu) {
         .shaderStorageImageExtendedFormats = has.features.shaderStorageImageExtendedFormats,
     };
     has.features = gpu->features;
-    has11 = (VkPhysicalDeviceVulkan11Features){
-        .sType = has11.sType, .pNext = has11.pNext, .shaderDrawParameters = has11.shaderDrawParameters};
+    has11 = (VkPhysicalDeviceVulkan11Features){.sType = has11.sType,
+                                               .pNext = has11.pNext,
+                                               .shaderDrawParameters = has11.shaderDrawParameters};
     has12 = (VkPhysicalDeviceVulkan12Features){
         .sType = has12.sType, .pNext = has12.pNext, .timelineSemaphore = VK_TRUE};
     has13 = (VkPhysicalDeviceVulkan13Features){

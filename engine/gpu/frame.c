@@ -1,8 +1,8 @@
 // frame.c: frame slots, submits, waiting.
 //
-// Data in: recorded command buffers. Data out: work on the queue, each submit signalling the next value
-// of one timeline semaphore. Called by the shells once a frame. Does not record anything by itself
-// besides the barrier that makes results readable by the host.
+// Data in: recorded command buffers. Data out: work on the queue, each submit signalling the next
+// value of one timeline semaphore. Called by the shells once a frame. Does not record anything by
+// itself besides the barrier that makes results readable by the host.
 //
 // Slot of a frame = its number modulo frame_count. Between frames gpu_frame_slot is already that of
 // the next frame, so DYNAMIC buffers can be filled before gpu_frame_begin as well.
@@ -12,7 +12,8 @@ static bool slot_create(Gpu *gpu, GpuFrameSlot *slot, u32 index) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                     .queueFamilyIndex = gpu->queue_family};
-    if (!GPU_CHECK(gpu, "frame", gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
+    if (!GPU_CHECK(gpu, "frame",
+                   gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
         return false;
     VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                           .commandPool = slot->pool,
@@ -26,8 +27,10 @@ static bool slot_create(Gpu *gpu, GpuFrameSlot *slot, u32 index) {
                    gpu->vk.vkCreateSemaphore(gpu->device, &semaphore, NULL, &slot->acquired)))
         return false;
     gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_POOL, GPU_HANDLE(slot->pool), "frame %u", index);
-    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, GPU_HANDLE(slot->buffer), "frame %u", index);
-    gpu_name_object(gpu, VK_OBJECT_TYPE_SEMAPHORE, GPU_HANDLE(slot->acquired), "acquired %u", index);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, GPU_HANDLE(slot->buffer), "frame %u",
+                    index);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_SEMAPHORE, GPU_HANDLE(slot->acquired), "acquired %u",
+                    index);
     return gpu_timers_create(gpu, slot, index);
 }
 
@@ -99,8 +102,8 @@ u64 gpu_submit(Gpu *gpu, const VkCommandBuffer *buffers, u32 count, VkSemaphore 
     VkCommandBufferSubmitInfo infos[2];
     LUZ_ASSERT(count <= COUNT_OF(infos));
     for (u32 i = 0; i < count; i++)
-        infos[i] = (VkCommandBufferSubmitInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                               .commandBuffer = buffers[i]};
+        infos[i] = (VkCommandBufferSubmitInfo){
+            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = buffers[i]};
     VkSemaphoreSubmitInfo waits = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                    .semaphore = wait,
                                    .stageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT};

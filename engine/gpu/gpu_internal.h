@@ -34,8 +34,8 @@ typedef struct GpuPool {
     u8 *items;
     u32 item_size, count, cap, first_free, alive_count;
 } GpuPool;
-// A zeroed item with its label; 0 and LOG GPU_LIMIT when the pool is full. Pointers into a pool hold
-// until the next add.
+// A zeroed item with its label; 0 and LOG GPU_LIMIT when the pool is full. Pointers into a pool
+// hold until the next add.
 u32 gpu_pool_add(GpuPool *pool, const char *label, void **item);
 void *gpu_pool_get(const GpuPool *pool, u32 id); // asserts that the handle is alive
 void gpu_pool_remove(GpuPool *pool, u32 id);
@@ -44,7 +44,9 @@ u32 gpu_pool_id_at(const GpuPool *pool, u32 index);
 
 // --- Memory (memory.c) ---
 
-typedef struct GpuFreeRange { u64 offset, size; } GpuFreeRange;
+typedef struct GpuFreeRange {
+    u64 offset, size;
+} GpuFreeRange;
 typedef struct GpuBlock {
     struct GpuBlock *next;
     VkDeviceMemory memory;
@@ -66,7 +68,11 @@ typedef struct GpuAllocation {
     GpuBlock *block; // NULL = none
     u64 offset, size;
 } GpuAllocation;
-typedef enum GpuMemoryUse { GPU_MEMORY_DEVICE, GPU_MEMORY_UPLOAD, GPU_MEMORY_READBACK } GpuMemoryUse;
+typedef enum GpuMemoryUse {
+    GPU_MEMORY_DEVICE,
+    GPU_MEMORY_UPLOAD,
+    GPU_MEMORY_READBACK
+} GpuMemoryUse;
 
 // --- Pooled objects ---
 
@@ -126,16 +132,16 @@ typedef struct GpuShader {
     char name[GPU_LABEL_CAP];
     const u32 *words;
     u32 byte_count;
-    u32 *owned;         // malloc'd words of a reload
-    u64 stamp;          // newest source stamp that `words` was made from; 0 = embedded
-    u64 refused_stamp;  // newest source stamp that did not compile
+    u32 *owned;        // malloc'd words of a reload
+    u64 stamp;         // newest source stamp that `words` was made from; 0 = embedded
+    u64 refused_stamp; // newest source stamp that did not compile
     bool is_broken, is_changed;
 } GpuShader;
 
 // --- Deferred destruction (destroy.c) ---
 
 typedef struct GpuDoomed {
-    u64 value; // free when the timeline has reached it; 0 = not submitted yet
+    u64 value;         // free when the timeline has reached it; 0 = not submitted yet
     VkObjectType type; // VK_OBJECT_TYPE_DEVICE_MEMORY = `allocation`
     u64 handle;
     u32 descriptor_pool, layout_id;
@@ -189,7 +195,8 @@ struct Gpu {
     VkDevice device;
     VkQueue queue;
     u32 queue_family;
-    struct VolkDeviceTable vk; // of this device; 1.2 devices have the KHR functions under the core names
+    struct VolkDeviceTable
+        vk; // of this device; 1.2 devices have the KHR functions under the core names
     bool has_debug_utils, is_vulkan_12, is_lost, accurate_timers;
     u32 validation_count;
     VkPhysicalDeviceMemoryProperties memory_properties;
@@ -240,8 +247,8 @@ struct Gpu {
 // --- Names and results (gpu_names.c) ---
 
 const char *gpu_result_name(VkResult result);
-// True if the result is no error. Else LOG GPU_RESULT "vkCreateBuffer "label": VK_ERROR_..."; a lost
-// device is remembered. `call` is the text of the call.
+// True if the result is no error. Else LOG GPU_RESULT "vkCreateBuffer "label": VK_ERROR_..."; a
+// lost device is remembered. `call` is the text of the call.
 bool gpu_check_at(Gpu *gpu, VkResult result, const char *call, const char *label, const char *file,
                   int line);
 #define GPU_CHECK(gpu, label, call) gpu_check_at((gpu), (call), #call, (label), __FILE__, __LINE__)
@@ -303,7 +310,8 @@ void gpu_descriptor_set_freed(Gpu *gpu, u32 descriptor_pool, u32 layout_id, VkDe
 void gpu_pipeline_cache_load(Gpu *gpu);
 void gpu_pipeline_cache_save(Gpu *gpu);
 bool gpu_pipeline_build(Gpu *gpu, GpuPipelineItem *item, VkPipeline *out);
-u32 gpu_shader_find(Gpu *gpu, const char *name); // index into Gpu.shaders, UINT32_MAX + log if unknown
+u32 gpu_shader_find(Gpu *gpu,
+                    const char *name); // index into Gpu.shaders, UINT32_MAX + log if unknown
 void gpu_shaders_destroy(Gpu *gpu);
 
 // --- barriers.c ---

@@ -1,7 +1,8 @@
 // gpu_names.c: names of results, names of objects.
 //
-// Data in: results of Vulkan calls, objects. Data out: log lines that say which call failed on which
-// object; debug names that validation messages and capture tools show. Called by all files here.
+// Data in: results of Vulkan calls, objects. Data out: log lines that say which call failed on
+// which object; debug names that validation messages and capture tools show. Called by all files
+// here.
 #include "gpu_internal.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +11,8 @@
 const char *gpu_result_name(VkResult result) {
     switch (result) {
 #define NAME(r)                                                                                    \
-    case r: return #r
+    case r:                                                                                        \
+        return #r
         NAME(VK_SUCCESS);
         NAME(VK_NOT_READY);
         NAME(VK_TIMEOUT);
@@ -33,7 +35,8 @@ const char *gpu_result_name(VkResult result) {
         NAME(VK_ERROR_NATIVE_WINDOW_IN_USE_KHR);
         NAME(VK_ERROR_OUT_OF_DATE_KHR);
 #undef NAME
-    default: return "an error without a name here";
+    default:
+        return "an error without a name here";
     }
 }
 

@@ -51,8 +51,9 @@ static bool env_is_on(const char *name) {
 
 bool gpu_instance_create(Gpu *gpu, const GpuDesc *desc) {
     if (!vkGetInstanceProcAddr && volkInitialize() != VK_SUCCESS) {
-        LOG(GPU_NONE, "no Vulkan loader (libvulkan.so.1): install libvulkan1 and a driver, for example "
-                      "mesa-vulkan-drivers");
+        LOG(GPU_NONE,
+            "no Vulkan loader (libvulkan.so.1): install libvulkan1 and a driver, for example "
+            "mesa-vulkan-drivers");
         return false;
     }
     if (volkGetInstanceVersion() < VK_API_VERSION_1_2) {
@@ -86,7 +87,8 @@ bool gpu_instance_create(Gpu *gpu, const GpuDesc *desc) {
         .pfnUserCallback = on_message,
         .pUserData = gpu,
     };
-    VkValidationFeatureEnableEXT enable = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeatureEnableEXT enable =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &messenger,
@@ -103,7 +105,9 @@ bool gpu_instance_create(Gpu *gpu, const GpuDesc *desc) {
     gpu->is_vulkan_12 = application.apiVersion == VK_API_VERSION_1_2;
     VkInstanceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pNext = has_features ? (const void *)&features : validate ? (const void *)&messenger : NULL,
+        .pNext = has_features ? (const void *)&features
+                 : validate   ? (const void *)&messenger
+                              : NULL,
         .pApplicationInfo = &application,
         .enabledLayerCount = validate ? 1 : 0,
         .ppEnabledLayerNames = (const char *const[]){LAYER_NAME},
@@ -113,16 +117,17 @@ bool gpu_instance_create(Gpu *gpu, const GpuDesc *desc) {
     VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     if (result != VK_SUCCESS) {
         gpu->instance = VK_NULL_HANDLE;
-        LOG(GPU_NONE, "no usable Vulkan driver (vkCreateInstance: %s): install one, for example "
-                      "mesa-vulkan-drivers, and check VK_DRIVER_FILES if it is set",
+        LOG(GPU_NONE,
+            "no usable Vulkan driver (vkCreateInstance: %s): install one, for example "
+            "mesa-vulkan-drivers, and check VK_DRIVER_FILES if it is set",
             gpu_result_name(result));
         return false;
     }
     volkLoadInstanceOnly(gpu->instance);
     if (validate)
-        return GPU_CHECK(gpu, desc->label,
-                         vkCreateDebugUtilsMessengerEXT(gpu->instance, &messenger, NULL,
-                                                        &gpu->messenger));
+        return GPU_CHECK(
+            gpu, desc->label,
+            vkCreateDebugUtilsMessengerEXT(gpu->instance, &messenger, NULL, &gpu->messenger));
     return true;
 }
 

@@ -1,11 +1,11 @@
 // memory.c: device memory in blocks, shared out by first fit, counted by named heap.
 //
-// Data in: requirements of a buffer or image, the heap's name. Data out: a place in a block. Called by
-// resources.c and upload.c. Does not: defragment, or watch a budget.
+// Data in: requirements of a buffer or image, the heap's name. Data out: a place in a block. Called
+// by resources.c and upload.c. Does not: defragment, or watch a budget.
 //
 // A block serves one heap, one memory type, and either buffers or images (so bufferImageGranularity
-// never matters). Something larger than half a block gets a block of its own. An empty block goes back
-// to the driver at once: heaps end at zero, and levels are loaded rarely enough.
+// never matters). Something larger than half a block gets a block of its own. An empty block goes
+// back to the driver at once: heaps end at zero, and levels are loaded rarely enough.
 #include "gpu_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -113,8 +113,11 @@ static GpuBlock *block_create(Gpu *gpu, u32 heap_index, u32 type, u64 size, bool
     *result = VK_ERROR_OUT_OF_HOST_MEMORY;
     GpuBlock *block = calloc(1, sizeof *block);
     if (!block) return NULL;
-    *block = (GpuBlock){.size = size, .heap = heap_index, .memory_type = type,
-                        .for_images = for_images, .dedicated = dedicated != NULL};
+    *block = (GpuBlock){.size = size,
+                        .heap = heap_index,
+                        .memory_type = type,
+                        .for_images = for_images,
+                        .dedicated = dedicated != NULL};
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                  .pNext = dedicated,
                                  .allocationSize = size,
@@ -139,7 +142,8 @@ static GpuBlock *block_create(Gpu *gpu, u32 heap_index, u32 type, u64 size, bool
     block->next = heap->blocks;
     heap->blocks = block;
     heap->allocated += size;
-    gpu_name_object(gpu, VK_OBJECT_TYPE_DEVICE_MEMORY, GPU_HANDLE(block->memory), "heap %s", heap->name);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_DEVICE_MEMORY, GPU_HANDLE(block->memory), "heap %s",
+                    heap->name);
     return block;
 }
 
@@ -151,8 +155,8 @@ static bool allocate_of_type(Gpu *gpu, u32 heap_index, u32 type, const VkMemoryR
     u64 offset = 0;
     if (!dedicated)
         for (block = heap->blocks; block; block = block->next)
-            if (block->memory_type == type && block->for_images == for_images && !block->dedicated &&
-                block_take(block, needs->size, needs->alignment, &offset))
+            if (block->memory_type == type && block->for_images == for_images &&
+                !block->dedicated && block_take(block, needs->size, needs->alignment, &offset))
                 break;
     if (!block) {
         u64 size = dedicated ? needs->size : BLOCK_SIZE;
@@ -182,8 +186,10 @@ bool gpu_memory_allocate(Gpu *gpu, u32 heap, GpuMemoryUse use, const VkMemoryReq
         [GPU_MEMORY_UPLOAD] = {LOCAL | MAPPED, MAPPED},
         [GPU_MEMORY_READBACK] = {MAPPED | CACHED, MAPPED},
     };
-    VkMemoryDedicatedAllocateInfo dedicated = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO, .buffer = buffer, .image = image};
+    VkMemoryDedicatedAllocateInfo dedicated = {.sType =
+                                                   VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO,
+                                               .buffer = buffer,
+                                               .image = image};
     bool is_alone = wants_dedicated || needs->size > BLOCK_SIZE / 2;
     VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     const VkPhysicalDeviceMemoryProperties *memory = &gpu->memory_properties;

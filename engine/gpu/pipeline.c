@@ -1,11 +1,11 @@
 // pipeline.c: shaders by name, pipelines from descs.
 //
-// Data in: GpuPipelineDesc, SPIR-V blobs. Data out: handles. Called by the renderer at load and by the
-// shader reload. Does not: derive layouts from shaders (a test compares them), or warm up drivers
-// that compile at the first use (the renderer does, with a progress bar).
+// Data in: GpuPipelineDesc, SPIR-V blobs. Data out: handles. Called by the renderer at load and by
+// the shader reload. Does not: derive layouts from shaders (a test compares them), or warm up
+// drivers that compile at the first use (the renderer does, with a progress bar).
 //
-// Every pipeline layout has the same push constant range (128 bytes, all stages), so that set 0 stays
-// bound across pipelines that agree on it.
+// Every pipeline layout has the same push constant range (128 bytes, all stages), so that set 0
+// stays bound across pipelines that agree on it.
 #include "gpu_internal.h"
 #include "../../shaders/shared.h"
 #include <stdio.h>
@@ -27,7 +27,8 @@ u32 gpu_shader_find(Gpu *gpu, const char *name) {
     if (!grown) return UINT32_MAX;
     gpu->shaders = grown;
     GpuShader *shader = &gpu->shaders[gpu->shader_count];
-    *shader = (GpuShader){.words = blob->words, .byte_count = (u32)((const u8 *)blob->end - (const u8 *)blob->words)};
+    *shader = (GpuShader){.words = blob->words,
+                          .byte_count = (u32)((const u8 *)blob->end - (const u8 *)blob->words)};
     LUZ_ASSERT(strlen(name) < sizeof shader->name);
     snprintf(shader->name, sizeof shader->name, "%s", name);
     return gpu->shader_count++;
@@ -45,8 +46,8 @@ static bool shader_module(Gpu *gpu, const GpuShader *shader, VkShaderModule *mod
         .codeSize = shader->byte_count,
         .pCode = shader->words,
     };
-    bool ok =
-        GPU_CHECK(gpu, shader->name, gpu->vk.vkCreateShaderModule(gpu->device, &info, NULL, module));
+    bool ok = GPU_CHECK(gpu, shader->name,
+                        gpu->vk.vkCreateShaderModule(gpu->device, &info, NULL, module));
     if (ok)
         gpu_name_object(gpu, VK_OBJECT_TYPE_SHADER_MODULE, GPU_HANDLE(*module), "%s", shader->name);
     return ok;
@@ -120,8 +121,8 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = desc->depth != GPU_DEPTH_NONE,
         .depthWriteEnable = desc->depth == GPU_DEPTH_WRITE,
-        .depthCompareOp = desc->depth == GPU_DEPTH_EQUAL ? VK_COMPARE_OP_EQUAL
-                                                         : VK_COMPARE_OP_GREATER_OR_EQUAL,
+        .depthCompareOp =
+            desc->depth == GPU_DEPTH_EQUAL ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_GREATER_OR_EQUAL,
     };
     VkPipelineColorBlendAttachmentState blends[GPU_TARGETS_CAP];
     VkFormat formats[GPU_TARGETS_CAP];
@@ -131,9 +132,11 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
         blends[i] = (VkPipelineColorBlendAttachmentState){
             .blendEnable = desc->blend != GPU_BLEND_NONE,
             .srcColorBlendFactor = is_alpha ? VK_BLEND_FACTOR_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
-            .dstColorBlendFactor = is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
+            .dstColorBlendFactor =
+                is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
             .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-            .dstAlphaBlendFactor = is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
+            .dstAlphaBlendFactor =
+                is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
             .colorWriteMask = 0xF,
         };
     }
@@ -145,7 +148,8 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
     VkPipelineDynamicStateCreateInfo dynamic = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
         .dynamicStateCount = 2,
-        .pDynamicStates = (const VkDynamicState[]){VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR},
+        .pDynamicStates =
+            (const VkDynamicState[]){VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR},
     };
     VkPipelineRenderingCreateInfo rendering = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
@@ -168,9 +172,9 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
         .pDynamicState = &dynamic,
         .layout = item->layout,
     };
-    return GPU_CHECK(gpu, item->pool.label,
-                     gpu->vk.vkCreateGraphicsPipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
-                                                       out));
+    return GPU_CHECK(
+        gpu, item->pool.label,
+        gpu->vk.vkCreateGraphicsPipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL, out));
 }
 
 bool gpu_pipeline_build(Gpu *gpu, GpuPipelineItem *item, VkPipeline *out) {
@@ -201,8 +205,8 @@ bool gpu_pipeline_build(Gpu *gpu, GpuPipelineItem *item, VkPipeline *out) {
             .layout = item->layout,
         };
         ok = GPU_CHECK(gpu, item->pool.label,
-                       gpu->vk.vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1, &info, NULL,
-                                                        out));
+                       gpu->vk.vkCreateComputePipelines(gpu->device, gpu->pipeline_cache, 1, &info,
+                                                        NULL, out));
     } else if (ok) {
         ok = build_graphics(gpu, item, stages, out);
     }
@@ -218,7 +222,8 @@ bool gpu_pipeline_build(Gpu *gpu, GpuPipelineItem *item, VkPipeline *out) {
 static bool pipeline_layout(Gpu *gpu, GpuPipelineItem *item) {
     VkDescriptorSetLayout sets[GPU_GROUPS_CAP];
     for (u32 i = 0; i < item->desc.layout_count; i++) {
-        const GpuBindLayoutItem *layout = gpu_pool_get(&gpu->bind_layouts, item->desc.layouts[i].id);
+        const GpuBindLayoutItem *layout =
+            gpu_pool_get(&gpu->bind_layouts, item->desc.layouts[i].id);
         sets[i] = layout->layout;
     }
     VkPipelineLayoutCreateInfo info = {

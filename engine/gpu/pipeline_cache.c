@@ -1,8 +1,8 @@
 // pipeline_cache.c: what the driver wants to keep of compiled pipelines, on disk between runs.
 //
-// Data in: $XDG_CACHE_HOME/luz or ~/.cache/luz. Data out: gpu->pipeline_cache. Called at the start and
-// the end of a Gpu. Losing the file costs time only: all trouble is silent. The file is the hash of
-// the rest, then the driver's bytes: a damaged one is not shown to the driver.
+// Data in: $XDG_CACHE_HOME/luz or ~/.cache/luz. Data out: gpu->pipeline_cache. Called at the start
+// and the end of a Gpu. Losing the file costs time only: all trouble is silent. The file is the
+// hash of the rest, then the driver's bytes: a damaged one is not shown to the driver.
 #include "gpu_internal.h"
 #include "../base/file.h"
 #include "../base/hash.h"
@@ -54,8 +54,8 @@ void gpu_pipeline_cache_load(Gpu *gpu) {
     if (!GPU_CHECK(gpu, gpu->label,
                    gpu->vk.vkCreatePipelineCache(gpu->device, &info, NULL, &gpu->pipeline_cache)))
         gpu->pipeline_cache = VK_NULL_HANDLE; // pipelines can do without
-    gpu_name_object(gpu, VK_OBJECT_TYPE_PIPELINE_CACHE, GPU_HANDLE(gpu->pipeline_cache), "%s pipelines",
-                    gpu->label);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_PIPELINE_CACHE, GPU_HANDLE(gpu->pipeline_cache),
+                    "%s pipelines", gpu->label);
     if (arena.memory) arena_destroy(&arena);
 }
 
@@ -69,8 +69,8 @@ void gpu_pipeline_cache_save(Gpu *gpu) {
         return;
     u8 *data = malloc(size + sizeof(u64));
     if (!data) return;
-    if (gpu->vk.vkGetPipelineCacheData(gpu->device, gpu->pipeline_cache, &size, data + sizeof(u64)) ==
-        VK_SUCCESS) {
+    if (gpu->vk.vkGetPipelineCacheData(gpu->device, gpu->pipeline_cache, &size,
+                                       data + sizeof(u64)) == VK_SUCCESS) {
         u64 hash = hash_bytes(data + sizeof(u64), size, 0);
         memcpy(data, &hash, sizeof hash);
         // Asked for first, so that a read-only home is no error message.

@@ -1,7 +1,7 @@
 // pool.c: arrays of objects behind handles with generations.
 //
-// Data in: items of one size. Data out: ids (generation << 16 | index + 1). Called by every file here
-// that creates objects. Does not own what the items refer to.
+// Data in: items of one size. Data out: ids (generation << 16 | index + 1). Called by every file
+// here that creates objects. Does not own what the items refer to.
 #include "gpu_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,7 +57,8 @@ void gpu_pool_remove(GpuPool *pool, u32 id) {
     GpuPoolItem *item = gpu_pool_get(pool, id);
     item->alive = false;
     pool->alive_count--;
-    // A slot whose generation would wrap is retired, so that no stale handle ever comes alive again.
+    // A slot whose generation would wrap is retired, so that no stale handle ever comes alive
+    // again.
     if (item->generation == UINT16_MAX) return;
     item->next_free = pool->first_free;
     pool->first_free = id & 0xFFFF;

@@ -1,8 +1,9 @@
 // resources.c: buffers, textures, samplers.
 //
-// Data in: descs. Data out: handles to pooled objects with memory and names. Called by everybody who
-// draws. Does not fill them (upload.c) or order accesses (barriers.c). A size or format that the
-// device cannot do is LOG GPU_LIMIT and {0}; memory that it does not have is LOG GPU_RESULT and {0}.
+// Data in: descs. Data out: handles to pooled objects with memory and names. Called by everybody
+// who draws. Does not fill them (upload.c) or order accesses (barriers.c). A size or format that
+// the device cannot do is LOG GPU_LIMIT and {0}; memory that it does not have is LOG GPU_RESULT and
+// {0}.
 #include "gpu_internal.h"
 
 static const struct {
@@ -48,11 +49,14 @@ bool gpu_raw_buffer_create(Gpu *gpu, u32 heap, GpuMemoryUse use, u64 size, VkBuf
             (f64)size / (f64)MIB(1), (f64)gpu->max_allocation_size / (f64)MIB(1));
         return false;
     }
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-    if (!GPU_CHECK(gpu, label, gpu->vk.vkCreateBuffer(gpu->device, &info, NULL, buffer))) return false;
-    VkMemoryDedicatedRequirements dedicated = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS};
-    VkMemoryRequirements2 needs = {.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, .pNext = &dedicated};
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+    if (!GPU_CHECK(gpu, label, gpu->vk.vkCreateBuffer(gpu->device, &info, NULL, buffer)))
+        return false;
+    VkMemoryDedicatedRequirements dedicated = {.sType =
+                                                   VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS};
+    VkMemoryRequirements2 needs = {.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2,
+                                   .pNext = &dedicated};
     gpu->vk.vkGetBufferMemoryRequirements2(
         gpu->device,
         &(VkBufferMemoryRequirementsInfo2){
@@ -89,8 +93,8 @@ GpuBuffer gpu_create_buffer(Gpu *gpu, const GpuBufferDesc *desc) {
         item->stride = ALIGN_UP(item->size, alignment);
         total = item->stride * gpu->frame_count;
     }
-    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                               VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (desc->vertex) usage |= VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
     if (desc->index) usage |= VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
     if (desc->indirect) usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
@@ -135,7 +139,8 @@ static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 mip_count, Vk
         .format = gpu_format_vk(gpu, item->format),
         .subresourceRange = {gpu_format_aspect(item->format), 0, mip_count, 0, 1},
     };
-    if (!GPU_CHECK(gpu, item->pool.label, gpu->vk.vkCreateImageView(gpu->device, &info, NULL, view))) {
+    if (!GPU_CHECK(gpu, item->pool.label,
+                   gpu->vk.vkCreateImageView(gpu->device, &info, NULL, view))) {
         *view = VK_NULL_HANDLE;
         return false;
     }
@@ -152,19 +157,21 @@ static bool texture_create_image(Gpu *gpu, GpuTextureItem *item, u32 heap,
         return false;
     }
     gpu_name_object(gpu, VK_OBJECT_TYPE_IMAGE, GPU_HANDLE(item->image), "%s", label);
-    VkMemoryDedicatedRequirements dedicated = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS};
-    VkMemoryRequirements2 needs = {.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, .pNext = &dedicated};
+    VkMemoryDedicatedRequirements dedicated = {.sType =
+                                                   VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS};
+    VkMemoryRequirements2 needs = {.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2,
+                                   .pNext = &dedicated};
     gpu->vk.vkGetImageMemoryRequirements2(
         gpu->device,
-        &(VkImageMemoryRequirementsInfo2){.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_REQUIREMENTS_INFO_2,
-                                          .image = item->image},
+        &(VkImageMemoryRequirementsInfo2){
+            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_REQUIREMENTS_INFO_2, .image = item->image},
         &needs);
-    return gpu_memory_allocate(gpu, heap, GPU_MEMORY_DEVICE, &needs.memoryRequirements, VK_NULL_HANDLE,
-                               item->image, dedicated.requiresDedicatedAllocation, label,
-                               &item->allocation) &&
+    return gpu_memory_allocate(gpu, heap, GPU_MEMORY_DEVICE, &needs.memoryRequirements,
+                               VK_NULL_HANDLE, item->image, dedicated.requiresDedicatedAllocation,
+                               label, &item->allocation) &&
            GPU_CHECK(gpu, label,
-                     gpu->vk.vkBindImageMemory(gpu->device, item->image, item->allocation.block->memory,
+                     gpu->vk.vkBindImageMemory(gpu->device, item->image,
+                                               item->allocation.block->memory,
                                                item->allocation.offset)) &&
            texture_view(gpu, item, item->mip_count, &item->view) &&
            (item->mip_count == 1 || texture_view(gpu, item, 1, &item->target_view));
@@ -198,8 +205,8 @@ GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
         .usage = usage,
     };
     VkImageFormatProperties limits;
-    VkResult result = vkGetPhysicalDeviceImageFormatProperties(gpu->physical, info.format, info.imageType,
-                                                               info.tiling, usage, 0, &limits);
+    VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+        gpu->physical, info.format, info.imageType, info.tiling, usage, 0, &limits);
     bool fits = result == VK_SUCCESS && item->width <= limits.maxExtent.width &&
                 item->height <= limits.maxExtent.height && item->depth <= limits.maxExtent.depth &&
                 item->mip_count <= limits.maxMipLevels &&
@@ -264,7 +271,8 @@ GpuSampler gpu_create_sampler(Gpu *gpu, const GpuSamplerDesc *desc) {
         .compareOp = desc->compare_greater ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_NEVER,
         .maxLod = VK_LOD_CLAMP_NONE,
     };
-    if (!GPU_CHECK(gpu, desc->label, gpu->vk.vkCreateSampler(gpu->device, &info, NULL, &item->sampler))) {
+    if (!GPU_CHECK(gpu, desc->label,
+                   gpu->vk.vkCreateSampler(gpu->device, &info, NULL, &item->sampler))) {
         gpu_pool_remove(&gpu->samplers, id);
         return (GpuSampler){0};
     }

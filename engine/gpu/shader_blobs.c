@@ -1,5 +1,5 @@
-// shader_blobs.c: look-up in the generated table of SPIR-V. Called by pipeline.c when a pipeline names
-// a shader for the first time; a linear search over some dozens of names is enough there.
+// shader_blobs.c: look-up in the generated table of SPIR-V. Called by pipeline.c when a pipeline
+// names a shader for the first time; a linear search over some dozens of names is enough there.
 #include "shader_blobs.h"
 #include <stddef.h>
 #include <string.h>

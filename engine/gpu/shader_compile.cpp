@@ -1,7 +1,8 @@
 // shader_compile.cpp: libglslang behind a C function.
 //
-// Data in: names and texts of sources. Data out: SPIR-V words, or the compiler's messages as file:line.
-// Called by shader_reload.c. The only C++ here: the library's C interface has no include callback.
+// Data in: names and texts of sources. Data out: SPIR-V words, or the compiler's messages as
+// file:line. Called by shader_reload.c. The only C++ here: the library's C interface has no include
+// callback.
 #include "shader_compile.h"
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -60,10 +61,14 @@ void copy_messages(const char *log, const char *name, char *error, u64 cap) {
 bool stage_of_name(const char *name, EShLanguage *stage) {
     const char *dot = strrchr(name, '.');
     if (!dot) return false;
-    if (strcmp(dot, ".vert") == 0) *stage = EShLangVertex;
-    else if (strcmp(dot, ".frag") == 0) *stage = EShLangFragment;
-    else if (strcmp(dot, ".comp") == 0) *stage = EShLangCompute;
-    else return false;
+    if (strcmp(dot, ".vert") == 0)
+        *stage = EShLangVertex;
+    else if (strcmp(dot, ".frag") == 0)
+        *stage = EShLangFragment;
+    else if (strcmp(dot, ".comp") == 0)
+        *stage = EShLangCompute;
+    else
+        return false;
     return true;
 }
 
@@ -111,13 +116,18 @@ bool compile(const char *name, const ShaderSources *sources, u32 spirv_version,
     return true;
 }
 
+struct Library {
+    Library() { glslang::InitializeProcess(); }
+    ~Library() { glslang::FinalizeProcess(); }
+};
+
 } // namespace
 
 bool shader_compile(const char *name, const ShaderSources *sources, u32 spirv_version, u32 **words,
                     u32 *byte_count, char *error, u64 error_cap) {
     error[0] = 0;
-    // Reference-counted by the library; the process keeps what it builds only while compiling.
-    glslang::InitializeProcess();
+    // Starting the library takes longer than compiling a shader: once, and only if used at all.
+    static const Library library;
     bool ok = false;
     try {
         std::vector<u32> result;
@@ -132,6 +142,5 @@ bool shader_compile(const char *name, const ShaderSources *sources, u32 spirv_ve
         snprintf(error, error_cap, "%s: %s", name, e.what());
         ok = false;
     }
-    glslang::FinalizeProcess();
     return ok;
 }

@@ -13,7 +13,8 @@ extern "C" {
 #define SHADER_INCLUDE_DEPTH_MAX 16       // an include cycle would hang the compiler
 #define SHADER_SOURCE_SIZE_MAX   KIB(256) // a file; so would an expression of 100,000 terms
 
-// Finds a source by name ("gbuffer.frag", "shared.h"): text that lives until shader_compile returns.
+// Finds a source by name ("gbuffer.frag", "shared.h"): text that lives until shader_compile
+// returns.
 typedef struct ShaderSources {
     bool (*read)(void *user, const char *name, Bytes *out);
     void *user;

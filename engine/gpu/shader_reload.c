@@ -1,17 +1,19 @@
 // shader_reload.c: shaders change while the program runs (development).
 //
 // Data in: a directory of sources and their modification times. Data out: pipelines rebuilt behind
-// their handles. Called once in a while by the shells (a key, or a look every half second). A broken
-// shader leaves everything as it was: LOG SHADER_ERROR, and the text for the screen.
+// their handles. Called once in a while by the shells (a key, or a look every half second). A
+// broken shader leaves everything as it was: LOG SHADER_ERROR, and the text for the screen.
 //
-// "Newer than what runs": a source's stamp is the newest of the file and all it includes. What runs was
-// made at the last reload, or with the program itself.
+// "Newer than what runs": a source's stamp is the newest of the file and all it includes. What runs
+// was made at the last reload, or with the program itself.
 #include "gpu_internal.h"
 #include "shader_compile.h"
 #include "../base/file.h"
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 // Reads sources below one directory.
 typedef struct SourceReader {
@@ -36,11 +38,19 @@ static const char *include_name(const char *line, const char *end, char *name, u
     return name;
 }
 
-// Newest stamp of a source and of what it includes; 0 if it is not there.
+static u64 modified_ns(int directory_fd, const char *name) {
+    struct stat info;
+    if (fstatat(directory_fd, name, &info, 0) != 0) return 0;
+    return (u64)info.st_mtim.tv_sec * 1000000000ull + (u64)info.st_mtim.tv_nsec;
+}
+
+// Newest time of a source and of what it includes; 0 if it is not there. (Not file_root_stamp: that
+// tells different from same, and the first look needs newer from older than the program.)
 static u64 source_stamp(SourceReader *reader, const char *name, u32 depth) {
-    u64 newest = file_root_stamp(&reader->root, name);
+    u64 newest = modified_ns(reader->root.fd, name);
     Bytes text;
-    if (!newest || depth > SHADER_INCLUDE_DEPTH_MAX || !source_read(reader, name, &text)) return newest;
+    if (!newest || depth > SHADER_INCLUDE_DEPTH_MAX || !source_read(reader, name, &text))
+        return newest;
     const char *end_of_text = (const char *)text.data + text.size;
     for (const char *line = text.data; line < end_of_text;) {
         const char *end = memchr(line, '\n', (size_t)(end_of_text - line));
@@ -57,7 +67,7 @@ static u64 source_stamp(SourceReader *reader, const char *name, u32 depth) {
 
 static u64 program_stamp(void) {
     static u64 stamp;
-    if (!stamp) stamp = file_stamp("/proc/self/exe");
+    if (!stamp) stamp = modified_ns(AT_FDCWD, "/proc/self/exe");
     return stamp;
 }
 
@@ -120,9 +130,11 @@ u32 gpu_reload_shaders(Gpu *gpu, const char *directory) {
         was_broken |= shader->is_broken;
         u64 mark = arena_mark(arena);
         u64 stamp = source_stamp(&reader, shader->name, 0);
-        u64 runs = shader->stamp ? shader->stamp : program_stamp();
-        if (stamp > runs && stamp != shader->refused_stamp)
+        bool is_new = shader->stamp ? stamp != shader->stamp : stamp > program_stamp();
+        if (stamp && is_new && stamp != shader->refused_stamp)
             any_changed |= shader_recompile(gpu, shader, &reader, stamp);
+        else if (!is_new)
+            shader->is_broken = false; // the edit was taken back
         arena_rewind(arena, mark);
         is_broken |= shader->is_broken;
     }

@@ -1,8 +1,8 @@
 // swapchain.c: the window's images.
 //
-// Data in: a surface made by GpuDesc.create_surface, a framebuffer size. Data out: an image to draw to,
-// shown by present. Called by the window shell: resize, then each frame begin, acquire, draw, end,
-// present. Does not know window libraries, and headless none of it runs.
+// Data in: a surface made by GpuDesc.create_surface, a framebuffer size. Data out: an image to draw
+// to, shown by present. Called by the window shell: resize, then each frame begin, acquire, draw,
+// end, present. Does not know window libraries, and headless none of it runs.
 //
 // Out of date, minimised and lost surfaces are normal events here: the calls say false, the shell
 // calls gpu_swapchain_resize, and that makes whatever is missing.
@@ -69,8 +69,7 @@ static void images_destroy(Gpu *gpu) {
 
 static void swapchain_drop(Gpu *gpu) {
     images_destroy(gpu);
-    if (gpu->swap.swapchain)
-        gpu->vk.vkDestroySwapchainKHR(gpu->device, gpu->swap.swapchain, NULL);
+    if (gpu->swap.swapchain) gpu->vk.vkDestroySwapchainKHR(gpu->device, gpu->swap.swapchain, NULL);
     gpu->swap.swapchain = VK_NULL_HANDLE;
 }
 
@@ -100,8 +99,9 @@ static bool images_create(Gpu *gpu) {
         LOG(GPU_LIMIT, "the swapchain has %u images, %u are handled", count, GPU_SWAP_IMAGES_CAP);
         return false;
     }
-    if (!GPU_CHECK(gpu, gpu->label,
-                   gpu->vk.vkGetSwapchainImagesKHR(gpu->device, swap->swapchain, &count, swap->images)))
+    if (!GPU_CHECK(
+            gpu, gpu->label,
+            gpu->vk.vkGetSwapchainImagesKHR(gpu->device, swap->swapchain, &count, swap->images)))
         return false;
     swap->image_count = count;
     for (u32 i = 0; i < count; i++) {
@@ -115,12 +115,15 @@ static bool images_create(Gpu *gpu) {
         VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
         if (!GPU_CHECK(gpu, "swapchain",
                        gpu->vk.vkCreateImageView(gpu->device, &view, NULL, &swap->views[i])) ||
-            !GPU_CHECK(gpu, "swapchain",
-                       gpu->vk.vkCreateSemaphore(gpu->device, &semaphore, NULL, &swap->rendered[i])))
+            !GPU_CHECK(
+                gpu, "swapchain",
+                gpu->vk.vkCreateSemaphore(gpu->device, &semaphore, NULL, &swap->rendered[i])))
             return false;
         gpu_name_object(gpu, VK_OBJECT_TYPE_IMAGE, GPU_HANDLE(swap->images[i]), "swapchain %u", i);
-        gpu_name_object(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(swap->views[i]), "swapchain %u", i);
-        gpu_name_object(gpu, VK_OBJECT_TYPE_SEMAPHORE, GPU_HANDLE(swap->rendered[i]), "rendered %u", i);
+        gpu_name_object(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(swap->views[i]), "swapchain %u",
+                        i);
+        gpu_name_object(gpu, VK_OBJECT_TYPE_SEMAPHORE, GPU_HANDLE(swap->rendered[i]), "rendered %u",
+                        i);
     }
     return true;
 }
@@ -134,8 +137,8 @@ static bool surface_renew(Gpu *gpu) {
     VkFormat before = swap->format.format;
     VkBool32 shows = VK_FALSE;
     if (!GPU_CHECK(gpu, gpu->label,
-                   vkGetPhysicalDeviceSurfaceSupportKHR(gpu->physical, gpu->queue_family, swap->surface,
-                                                        &shows)) ||
+                   vkGetPhysicalDeviceSurfaceSupportKHR(gpu->physical, gpu->queue_family,
+                                                        swap->surface, &shows)) ||
         !shows || !gpu_surface_pick_format(gpu))
         return false;
     if (swap->format.format != before) { // pipelines were made for the old one
@@ -219,10 +222,9 @@ bool gpu_swapchain_acquire(Gpu *gpu, GpuCommands *cmd) {
     LUZ_ASSERT(cmd == &gpu->commands && gpu->is_recording);
     LUZ_ASSERT(!swap->is_acquired); // one image at a time: present comes first
     if (!swap->swapchain || swap->is_stale) return false;
-    VkResult result =
-        gpu->vk.vkAcquireNextImageKHR(gpu->device, swap->swapchain, ACQUIRE_TIMEOUT_NS,
-                                      gpu->slots[gpu->frame_slot].acquired, VK_NULL_HANDLE,
-                                      &swap->image_index);
+    VkResult result = gpu->vk.vkAcquireNextImageKHR(
+        gpu->device, swap->swapchain, ACQUIRE_TIMEOUT_NS, gpu->slots[gpu->frame_slot].acquired,
+        VK_NULL_HANDLE, &swap->image_index);
     if (result == VK_TIMEOUT || result == VK_NOT_READY) return false;
     // A suboptimal image is an image: draw it, and let present say that a resize is due.
     if (!swapchain_result(gpu, result, "vkAcquireNextImageKHR")) return false;
@@ -260,6 +262,7 @@ bool gpu_swapchain_present(Gpu *gpu) {
         .pSwapchains = &swap->swapchain,
         .pImageIndices = &swap->image_index,
     };
-    bool ok = swapchain_result(gpu, gpu->vk.vkQueuePresentKHR(gpu->queue, &info), "vkQueuePresentKHR");
+    bool ok =
+        swapchain_result(gpu, gpu->vk.vkQueuePresentKHR(gpu->queue, &info), "vkQueuePresentKHR");
     return ok && !swap->is_stale;
 }

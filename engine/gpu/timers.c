@@ -1,7 +1,7 @@
 // timers.c: how long the GPU worked on what.
 //
-// Data in: pairs of timestamps with names. Data out: GpuTimer of the newest finished frame, in order of
-// begin. Called by the renderer around every pass. Does not average or sort.
+// Data in: pairs of timestamps with names. Data out: GpuTimer of the newest finished frame, in
+// order of begin. Called by the renderer around every pass. Does not average or sort.
 //
 // accurate_timers: a full barrier after every timestamp. Without it the software driver runs work
 // later than the timestamp says, and blames the wrong pass. Within rendering no barrier is allowed:
@@ -33,8 +33,9 @@ void gpu_timers_collect(Gpu *gpu, GpuFrameSlot *slot) {
     u64 stamps[2 * GPU_TIMERS_CAP];
     u32 count = slot->timer_count;
     slot->timer_count = 0;
-    if (gpu->vk.vkGetQueryPoolResults(gpu->device, slot->queries, 0, 2 * count, 2 * count * sizeof(u64),
-                                      stamps, sizeof(u64), VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+    if (gpu->vk.vkGetQueryPoolResults(gpu->device, slot->queries, 0, 2 * count,
+                                      2 * count * sizeof(u64), stamps, sizeof(u64),
+                                      VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
         return;
     for (u32 i = 0; i < count; i++) {
         u64 ticks = (stamps[2 * i + 1] - stamps[2 * i]) & gpu->timestamp_mask;

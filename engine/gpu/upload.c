@@ -1,11 +1,13 @@
 // upload.c: bytes of the CPU to buffers and textures, through a ring of staging memory.
 //
 // Data in: bytes, copied at the call. Data out: copies in a command buffer of their own, submitted
-// before the frame's commands (or alone, when the ring is full: then the call waits). Called at load
-// and whenever data changes. Not for data of every frame: that is what DYNAMIC buffers are for.
+// before the frame's commands (or alone, when the ring is full: then the call waits). Called at
+// load and whenever data changes. Not for data of every frame: that is what DYNAMIC buffers are
+// for.
 //
 // Anything larger than a chunk goes in several pieces, so the ring bounds all staging memory.
-// staging_head and staging_tail count bytes for ever; a place in the ring is their rest modulo its size.
+// staging_head and staging_tail count bytes for ever; a place in the ring is their rest modulo its
+// size.
 #include "gpu_internal.h"
 #include <string.h>
 
@@ -15,9 +17,11 @@
 static void transfer_barrier(Gpu *gpu, bool before, bool after) {
     VkMemoryBarrier2 barrier = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-        .srcStageMask = before ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+        .srcStageMask =
+            before ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
         .srcAccessMask = before ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT,
-        .dstStageMask = after ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+        .dstStageMask =
+            after ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
         .dstAccessMask = after ? VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT
                                : VK_ACCESS_2_TRANSFER_WRITE_BIT,
     };
@@ -30,7 +34,8 @@ static bool upload_slot_create(Gpu *gpu, GpuUploadSlot *slot) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                     .queueFamilyIndex = gpu->queue_family};
-    if (!GPU_CHECK(gpu, "uploads", gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
+    if (!GPU_CHECK(gpu, "uploads",
+                   gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
         return false;
     VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                           .commandPool = slot->pool,
@@ -52,9 +57,9 @@ static bool batch_begin(Gpu *gpu) {
     if (gpu->is_uploading) return true;
     if (gpu->is_lost) return false;
     if (!gpu->staging &&
-        !gpu_raw_buffer_create(gpu, gpu_heap_index(gpu, "staging"), GPU_MEMORY_UPLOAD, GPU_STAGING_SIZE,
-                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "staging", &gpu->staging,
-                               &gpu->staging_memory)) {
+        !gpu_raw_buffer_create(gpu, gpu_heap_index(gpu, "staging"), GPU_MEMORY_UPLOAD,
+                               GPU_STAGING_SIZE, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "staging",
+                               &gpu->staging, &gpu->staging_memory)) {
         gpu->staging = VK_NULL_HANDLE;
         return false;
     }
@@ -134,8 +139,8 @@ void gpu_upload_buffer(Gpu *gpu, GpuBuffer buffer, u64 offset, const void *data,
         }
         item->upload_epoch = gpu->upload_epoch;
         VkBufferCopy region = {staged, offset + done, piece};
-        gpu->vk.vkCmdCopyBuffer(gpu->uploads[gpu->upload_slot].buffer, gpu->staging, item->buffer, 1,
-                                &region);
+        gpu->vk.vkCmdCopyBuffer(gpu->uploads[gpu->upload_slot].buffer, gpu->staging, item->buffer,
+                                1, &region);
         done += piece;
     }
 }
@@ -151,7 +156,8 @@ static bool upload_mip(Gpu *gpu, const GpuTextureItem *item, u32 mip, const u8 *
         for (u32 y = 0; y < height; y += rows) {
             u32 piece_depth = MIN(slices, depth - z), piece_height = MIN(rows, height - y);
             u64 staged;
-            if (!stage(gpu, pixels + z * slice + y * row, row * piece_height * piece_depth, &staged))
+            if (!stage(gpu, pixels + z * slice + y * row, row * piece_height * piece_depth,
+                       &staged))
                 return false;
             VkBufferImageCopy region = {
                 .bufferOffset = staged,

@@ -24,9 +24,12 @@ TEST(gpu, every_pair_of_usages_has_its_barrier) {
         for (u32 to = GPU_USAGE_NONE + 1; to < GPU_USAGE_COUNT; to++) {
             const GpuUsageInfo *a = &gpu_usage_table[from], *b = &gpu_usage_table[to];
             bool needs = gpu_usage_needs_barrier((GpuUsage)from, (GpuUsage)to);
-            if (a->is_write || b->is_write) assert_true(needs); // also write -> the same write
-            else if (from == to) assert_false(needs);
-            else if (a->layout == b->layout) assert_false(needs);
+            if (a->is_write || b->is_write)
+                assert_true(needs); // also write -> the same write
+            else if (from == to)
+                assert_false(needs);
+            else if (a->layout == b->layout)
+                assert_false(needs);
         }
     // Depth is tested and sampled in one layout; colour is not sampled in the storage layout.
     assert_false(gpu_usage_needs_barrier(GPU_USAGE_DEPTH_TEST, GPU_USAGE_SAMPLED_FRAGMENT));
@@ -47,10 +50,11 @@ TEST(gpu, barriers_cover_the_reads_that_need_none) {
             for (u32 to = 1; to < GPU_USAGE_COUNT; to++) {
                 if (!gpu_usage_table[from].is_write || gpu_usage_table[to].is_write) continue;
                 if (gpu_usage_table[to].layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
-                if ((to == GPU_USAGE_DEPTH_TEST || from == GPU_USAGE_DEPTH_TARGET) && !depth) continue;
+                if ((to == GPU_USAGE_DEPTH_TEST || from == GPU_USAGE_DEPTH_TARGET) && !depth)
+                    continue;
                 if (from == GPU_USAGE_COLOR_TARGET && depth) continue;
-                VkImageMemoryBarrier2 barrier = gpu_image_barrier(VK_NULL_HANDLE, depth, (GpuUsage)from,
-                                                                  (GpuUsage)to, false);
+                VkImageMemoryBarrier2 barrier =
+                    gpu_image_barrier(VK_NULL_HANDLE, depth, (GpuUsage)from, (GpuUsage)to, false);
                 assert_true(has_bits(barrier.srcStageMask, gpu_usage_table[from].stages));
                 assert_int_equal(barrier.oldLayout, gpu_usage_layout((GpuUsage)from, depth));
                 assert_int_equal(barrier.newLayout, gpu_usage_layout((GpuUsage)to, depth));
@@ -71,11 +75,12 @@ TEST(gpu, barriers_cover_the_reads_that_need_none) {
 }
 
 TEST(gpu, discard_forgets_the_contents) {
-    VkImageMemoryBarrier2 barrier = gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_SAMPLED_FRAGMENT,
-                                                      GPU_USAGE_COLOR_TARGET, true);
+    VkImageMemoryBarrier2 barrier = gpu_image_barrier(
+        VK_NULL_HANDLE, false, GPU_USAGE_SAMPLED_FRAGMENT, GPU_USAGE_COLOR_TARGET, true);
     assert_int_equal(barrier.oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
     assert_true(has_bits(barrier.srcStageMask, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
-    ASSERT_DIES(gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_NONE, false));
     ASSERT_DIES(
-        gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_INDIRECT, false));
+        gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_NONE, false));
+    ASSERT_DIES(gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_INDIRECT,
+                                  false));
 }

@@ -1,4 +1,5 @@
-// gpu_compute.c: buffers, uploads, compute, push and specialisation constants, DYNAMIC copies, timers.
+// gpu_compute.c: buffers, uploads, compute, push and specialisation constants, DYNAMIC copies,
+// timers.
 #include "gpu_fixture.h"
 #include "../../engine/base/random.h"
 #include <stdlib.h>
@@ -9,8 +10,9 @@ static void run_buffer_shader(Gpu *gpu, GpuPipeline pipeline, GpuBindGroup group
                               u32 count, u32 add) {
     GpuCommands *cmd = gpu_frame_begin(gpu);
     assert_non_null(cmd);
-    gpu_cmd_barriers(cmd, &(GpuBarrier){.buffer = out, .from = GPU_USAGE_NONE,
-                                        .to = GPU_USAGE_STORAGE_COMPUTE}, 1);
+    gpu_cmd_barriers(
+        cmd, &(GpuBarrier){.buffer = out, .from = GPU_USAGE_NONE, .to = GPU_USAGE_STORAGE_COMPUTE},
+        1);
     gpu_cmd_bind_pipeline(cmd, pipeline);
     gpu_cmd_bind_group(cmd, 0, group);
     gpu_cmd_push(cmd, (u32[]){count, add}, 8);
@@ -31,7 +33,8 @@ TEST_GPU(gpu, upload_compute_and_read_back) {
     GpuPipeline plain = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 0, NULL);
     GpuPipeline special = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 2, (u32[]){3, 1000});
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
+        gpu, &(GpuBindGroupDesc){.label = "group",
+                                 .layout = layout,
                                  .bindings = {{.buffer = in}, {.buffer = out}}});
     assert_true(group.id);
 
@@ -65,13 +68,15 @@ TEST_GPU(gpu, upload_larger_than_staging) {
     enum { COUNT = 10 * 1024 * 1024 };
     u32 *values = malloc(COUNT * sizeof *values);
     for (u32 i = 0; i < COUNT; i++) values[i] = i * 2654435761u;
-    GpuBuffer in = gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "in", .size = COUNT * sizeof(u32)});
+    GpuBuffer in =
+        gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "in", .size = COUNT * sizeof(u32)});
     GpuBuffer out = gpu_fixture_readback(gpu, COUNT * sizeof(u32));
     GpuBindLayout layout =
         gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_BUFFER, GPU_BINDING_STORAGE_BUFFER, 2);
     GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 0, NULL);
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
+        gpu, &(GpuBindGroupDesc){.label = "group",
+                                 .layout = layout,
                                  .bindings = {{.buffer = in}, {.buffer = out}}});
     // First some odd pieces, so that the large ones do not start at a round place of the ring.
     gpu_upload_buffer(gpu, in, 0, values, 4);
@@ -106,7 +111,8 @@ TEST_GPU(gpu, dynamic_buffers_keep_frames_apart) {
         for (u32 f = 0; f < FRAMES; f++) {
             out[f] = gpu_fixture_readback(gpu, COUNT * 4);
             groups[f] = gpu_create_bind_group(
-                gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
+                gpu, &(GpuBindGroupDesc){.label = "group",
+                                         .layout = layout,
                                          .bindings = {{.buffer = in}, {.buffer = out[f]}}});
         }
         for (u32 f = 0; f < FRAMES; f++) {
@@ -154,11 +160,15 @@ TEST_GPU(gpu, dispatch_indirect) {
         gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_BUFFER, GPU_BINDING_STORAGE_BUFFER, 2);
     GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 0, NULL);
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
+        gpu, &(GpuBindGroupDesc){.label = "group",
+                                 .layout = layout,
                                  .bindings = {{.buffer = in}, {.buffer = out}}});
     GpuCommands *cmd = gpu_frame_begin(gpu);
-    gpu_cmd_barriers(cmd, (GpuBarrier[]){{.buffer = counts, .from = GPU_USAGE_STORAGE_COMPUTE,
-                                          .to = GPU_USAGE_INDIRECT}}, 1);
+    gpu_cmd_barriers(
+        cmd,
+        (GpuBarrier[]){
+            {.buffer = counts, .from = GPU_USAGE_STORAGE_COMPUTE, .to = GPU_USAGE_INDIRECT}},
+        1);
     gpu_cmd_bind_pipeline(cmd, pipeline);
     gpu_cmd_bind_group(cmd, 0, group);
     gpu_cmd_push(cmd, (u32[]){256, 0}, 8);
@@ -176,7 +186,8 @@ TEST_GPU(gpu, dispatch_indirect) {
 
 TEST_GPU(gpu, timers_are_named_and_plausible) {
     for (u32 accurate = 0; accurate < 2; accurate++) {
-        Gpu *gpu = gpu_fixture_create_desc((GpuDesc){.label = "timers", .accurate_timers = accurate});
+        Gpu *gpu =
+            gpu_fixture_create_desc((GpuDesc){.label = "timers", .accurate_timers = accurate});
         if (!gpu_info(gpu)->timestamps) TEST_SKIP("no timestamps on this device");
         enum { COUNT = 1 << 20 };
         GpuBuffer in = gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "in", .size = COUNT * 4});
@@ -185,7 +196,8 @@ TEST_GPU(gpu, timers_are_named_and_plausible) {
             gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_BUFFER, GPU_BINDING_STORAGE_BUFFER, 2);
         GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 0, NULL);
         GpuBindGroup group = gpu_create_bind_group(
-            gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
+            gpu, &(GpuBindGroupDesc){.label = "group",
+                                     .layout = layout,
                                      .bindings = {{.buffer = in}, {.buffer = out}}});
         GpuTimer timers[GPU_TIMERS_CAP];
         assert_int_equal(gpu_timers(gpu, timers, GPU_TIMERS_CAP), 0);
@@ -197,8 +209,11 @@ TEST_GPU(gpu, timers_are_named_and_plausible) {
             gpu_cmd_bind_pipeline(cmd, pipeline);
             gpu_cmd_bind_group(cmd, 0, group);
             gpu_cmd_push(cmd, (u32[]){COUNT, 0}, 8);
-            gpu_cmd_barriers(cmd, &(GpuBarrier){.buffer = out, .from = GPU_USAGE_STORAGE_COMPUTE,
-                                                .to = GPU_USAGE_STORAGE_COMPUTE}, 1);
+            gpu_cmd_barriers(cmd,
+                             &(GpuBarrier){.buffer = out,
+                                           .from = GPU_USAGE_STORAGE_COMPUTE,
+                                           .to = GPU_USAGE_STORAGE_COMPUTE},
+                             1);
             gpu_cmd_dispatch(cmd, COUNT / 64, 1, 1);
             gpu_cmd_timer_end(cmd);
             gpu_cmd_timer_begin(cmd, "nothing");

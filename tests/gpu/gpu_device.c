@@ -25,9 +25,11 @@ TEST_GPU(gpu, creates_and_destroys_without_a_message) {
 TEST_GPU(gpu, validation_is_heard) {
     Gpu *gpu = gpu_fixture_create("validation_is_heard");
     if (!gpu->messenger) TEST_SKIP("the validation layer is not installed");
-    GpuTexture texture = gpu_create_texture(
-        gpu, &(GpuTextureDesc){.label = "never filled", .format = GPU_FORMAT_RGBA8, .width = 4,
-                               .height = 4, .sampled = true});
+    GpuTexture texture = gpu_create_texture(gpu, &(GpuTextureDesc){.label = "never filled",
+                                                                   .format = GPU_FORMAT_RGBA8,
+                                                                   .width = 4,
+                                                                   .height = 4,
+                                                                   .sampled = true});
     GpuBuffer out = gpu_fixture_readback(gpu, 64);
     log_set_level(LOG_SEVERITY_NONE);
     GpuCommands *cmd = gpu_frame_begin(gpu);
@@ -117,8 +119,10 @@ TEST(gpu, pool_retires_slots) {
     for (u32 i = 0; i < UINT16_MAX; i++) {
         u32 id = gpu_pool_add(&pool, "thing", &item);
         assert_int_equal(id & 0xFFFF, 1);
-        if (i == 0) first = id;
-        else assert_true(id != first);
+        if (i == 0)
+            first = id;
+        else
+            assert_true(id != first);
         gpu_pool_remove(&pool, id);
     }
     assert_int_equal(gpu_pool_add(&pool, "thing", &item) & 0xFFFF, 2);
@@ -144,23 +148,36 @@ TEST_GPU(gpu, limits_are_refused_politely) {
     for (u32 i = 0; i < COUNT_OF(sizes); i++)
         for (u32 kind = 0; kind < 3; kind++) {
             GpuBuffer buffer = gpu_create_buffer(
-                gpu, &(GpuBufferDesc){.label = "huge", .size = sizes[i], .kind = (GpuBufferKind)kind});
+                gpu,
+                &(GpuBufferDesc){.label = "huge", .size = sizes[i], .kind = (GpuBufferKind)kind});
             assert_int_equal(buffer.id, 0);
             assert_int_equal(log_count(LOG_GPU_LIMIT) + log_count(LOG_GPU_RESULT), ++count);
         }
     GpuTextureDesc textures[] = {
-        {.label = "wide", .format = GPU_FORMAT_RGBA8, .width = 1 << 20, .height = 1, .sampled = true},
-        {.label = "deep", .format = GPU_FORMAT_RGBA32F, .width = 16384, .height = 16384,
-         .depth = 16384, .storage = true},
-        {.label = "sRGB storage", .format = GPU_FORMAT_RGBA8_SRGB, .width = 4, .height = 4,
+        {.label = "wide",
+         .format = GPU_FORMAT_RGBA8,
+         .width = 1 << 20,
+         .height = 1,
+         .sampled = true},
+        {.label = "deep",
+         .format = GPU_FORMAT_RGBA32F,
+         .width = 16384,
+         .height = 16384,
+         .depth = 16384,
+         .storage = true},
+        {.label = "sRGB storage",
+         .format = GPU_FORMAT_RGBA8_SRGB,
+         .width = 4,
+         .height = 4,
          .storage = true},
     };
     for (u32 i = 0; i < COUNT_OF(textures); i++) {
         assert_int_equal(gpu_create_texture(gpu, &textures[i]).id, 0);
         assert_int_equal(log_count(LOG_GPU_LIMIT) + log_count(LOG_GPU_RESULT), ++count);
     }
-    assert_int_equal(gpu_create_pipeline(gpu, &(GpuPipelineDesc){.label = "none",
-                                                                 .compute = "no_such.comp"}).id, 0);
+    assert_int_equal(
+        gpu_create_pipeline(gpu, &(GpuPipelineDesc){.label = "none", .compute = "no_such.comp"}).id,
+        0);
     assert_int_equal(log_count(LOG_SHADER_ERROR), 1);
     // A buffer that exists but that shaders here cannot see whole.
     if (gpu_info(gpu)->max_storage_buffer_size < MIB(512)) {
@@ -168,9 +185,11 @@ TEST_GPU(gpu, limits_are_refused_politely) {
             gpu, &(GpuBufferDesc){.label = "large",
                                   .size = gpu_info(gpu)->max_storage_buffer_size + 16});
         GpuBindLayout layout = gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_BUFFER, 0, 1);
-        assert_int_equal(gpu_create_bind_group(gpu, &(GpuBindGroupDesc){.label = "group",
-                                                                        .layout = layout,
-                                                                        .bindings = {{large}}}).id, 0);
+        assert_int_equal(
+            gpu_create_bind_group(
+                gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout, .bindings = {{large}}})
+                .id,
+            0);
         assert_int_equal(log_count(LOG_GPU_LIMIT) + log_count(LOG_GPU_RESULT), ++count);
         gpu_destroy_buffer(gpu, large);
     }
@@ -201,16 +220,18 @@ TEST_GPU(gpu, memory_is_shared_out_without_overlap) {
         if (buffers[i].id) {
             u32 *data = gpu_buffer_map(gpu, buffers[i]);
             u64 words = gpu_buffer_size(gpu, buffers[i]) / 4;
-            for (u64 w = 0; w < words; w += MAX(words / 64, 1)) assert_int_equal(data[w], i * 31 + w);
+            for (u64 w = 0; w < words; w += MAX(words / 64, 1))
+                assert_int_equal(data[w], i * 31 + w);
             gpu_destroy_buffer(gpu, buffers[i]);
             buffers[i] = (GpuBuffer){0};
             if (round % 16 == 0) gpu_wait_idle(gpu); // the deferred ones go
         } else {
             u32 random = random_u32(7, 2, round);
             u64 size = 4 + (random % 8 ? random / 8 % 60000 : random / 8 % MIB(3)) / 4 * 4;
-            buffers[i] = gpu_create_buffer(
-                gpu, &(GpuBufferDesc){.label = "random", .heap = "random heap", .size = size,
-                                      .kind = GPU_BUFFER_READBACK});
+            buffers[i] = gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "random",
+                                                                 .heap = "random heap",
+                                                                 .size = size,
+                                                                 .kind = GPU_BUFFER_READBACK});
             assert_true(buffers[i].id);
             u32 *data = gpu_buffer_map(gpu, buffers[i]);
             for (u64 w = 0; w < size / 4; w++) data[w] = (u32)(i * 31 + w);
@@ -254,8 +275,8 @@ TEST_GPU(gpu, bind_groups_by_the_thousand) {
     for (u32 round = 0; round < 3; round++) {
         for (u32 i = 0; i < COUNT_OF(groups); i++) {
             groups[i] = gpu_create_bind_group(
-                gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
-                                         .bindings = {{buffer}, {buffer}}});
+                gpu, &(GpuBindGroupDesc){
+                         .label = "group", .layout = layout, .bindings = {{buffer}, {buffer}}});
             assert_true(groups[i].id);
         }
         for (u32 i = 0; i < COUNT_OF(groups); i++) gpu_destroy_bind_group(gpu, groups[i]);

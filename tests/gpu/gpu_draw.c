@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE 32u
+#define SIDE  32u
 #define RED   0xFF0000FFu // RGBA8, red lowest
 #define GREEN 0xFF00FF00u
 #define BLUE  0xFFFF0000u
@@ -14,9 +14,13 @@ static MeshVertex vertex(f32 x, f32 y, f32 z, u32 color) {
 }
 
 static GpuTexture make_target(Gpu *gpu, const char *label, GpuFormat format) {
-    GpuTexture texture = gpu_create_texture(
-        gpu, &(GpuTextureDesc){.label = label, .heap = "targets", .format = format, .width = SIDE,
-                               .height = SIDE, .render_target = true, .sampled = true});
+    GpuTexture texture = gpu_create_texture(gpu, &(GpuTextureDesc){.label = label,
+                                                                   .heap = "targets",
+                                                                   .format = format,
+                                                                   .width = SIDE,
+                                                                   .height = SIDE,
+                                                                   .render_target = true,
+                                                                   .sampled = true});
     assert_true(texture.id);
     return texture;
 }
@@ -24,34 +28,42 @@ static GpuTexture make_target(Gpu *gpu, const char *label, GpuFormat format) {
 static GpuPipeline make_pipeline(Gpu *gpu, GpuFormat format, GpuBlend blend, GpuDepth depth,
                                  GpuCull cull) {
     return gpu_create_pipeline(
-        gpu, &(GpuPipelineDesc){.label = "draw", .vertex = "test_draw.vert",
-                                .fragment = "test_draw.frag", .push_size = 16, .targets = {format},
+        gpu, &(GpuPipelineDesc){.label = "draw",
+                                .vertex = "test_draw.vert",
+                                .fragment = "test_draw.frag",
+                                .push_size = 16,
+                                .targets = {format},
                                 .target_count = 1,
                                 .depth_format = depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,
-                                .depth = depth, .cull = cull, .blend = blend,
+                                .depth = depth,
+                                .cull = cull,
+                                .blend = blend,
                                 .vertex_layout = GPU_VERTEX_MESH});
 }
 
 static GpuBuffer make_vertices(Gpu *gpu, const MeshVertex *vertices, u32 count) {
     GpuBuffer buffer = gpu_create_buffer(
-        gpu, &(GpuBufferDesc){.label = "vertices", .size = count * sizeof(MeshVertex), .vertex = true});
+        gpu,
+        &(GpuBufferDesc){.label = "vertices", .size = count * sizeof(MeshVertex), .vertex = true});
     gpu_upload_buffer(gpu, buffer, 0, vertices, count * sizeof(MeshVertex));
     return buffer;
 }
 
 // After the last rendering of a frame: the target's pixels into a buffer.
 static void copy_out(GpuCommands *cmd, GpuTexture texture, GpuUsage from, GpuBuffer buffer) {
-    gpu_cmd_barriers(cmd, &(GpuBarrier){.texture = texture, .from = from, .to = GPU_USAGE_COPY_SOURCE}, 1);
+    gpu_cmd_barriers(
+        cmd, &(GpuBarrier){.texture = texture, .from = from, .to = GPU_USAGE_COPY_SOURCE}, 1);
     gpu_cmd_copy_texture_to_buffer(cmd, texture, buffer);
 }
 
-// A near triangle in the lower left half, then a far one over everything, then one that faces away. Row 0 of the picture is the top: NDC y = 1.
+// A near triangle in the lower left half, then a far one over everything, then one that faces away.
+// Row 0 of the picture is the top: NDC y = 1.
 TEST_GPU(gpu, draws_with_depth_and_culling) {
     Gpu *gpu = gpu_fixture_create("draws_with_depth_and_culling");
     MeshVertex vertices[] = {
-        vertex(-1, -1, 0.75f, RED),   vertex(1, -1, 0.75f, RED),   vertex(-1, 1, 0.75f, RED),
-        vertex(-1, -3, 0.25f, GREEN), vertex(3, 1, 0.25f, GREEN),  vertex(-1, 1, 0.25f, GREEN),
-        vertex(-1, -1, 1.0f, BLUE),   vertex(-1, 1, 1.0f, BLUE),   vertex(1, -1, 1.0f, BLUE),
+        vertex(-1, -1, 0.75f, RED),   vertex(1, -1, 0.75f, RED),  vertex(-1, 1, 0.75f, RED),
+        vertex(-1, -3, 0.25f, GREEN), vertex(3, 1, 0.25f, GREEN), vertex(-1, 1, 0.25f, GREEN),
+        vertex(-1, -1, 1.0f, BLUE),   vertex(-1, 1, 1.0f, BLUE),  vertex(1, -1, 1.0f, BLUE),
     };
     GpuBuffer buffer = make_vertices(gpu, vertices, COUNT_OF(vertices));
     u16 index_list[] = {0, 1, 2, 0, 1, 2}; // the second three start at vertex_offset
@@ -67,12 +79,15 @@ TEST_GPU(gpu, draws_with_depth_and_culling) {
     GpuBuffer depths = gpu_fixture_readback(gpu, SIDE * SIDE * 4);
 
     GpuCommands *cmd = gpu_frame_begin(gpu);
-    gpu_cmd_barriers(cmd, (GpuBarrier[]){{.texture = color, .to = GPU_USAGE_COLOR_TARGET},
-                                         {.texture = depth, .to = GPU_USAGE_DEPTH_TARGET}}, 2);
+    gpu_cmd_barriers(cmd,
+                     (GpuBarrier[]){{.texture = color, .to = GPU_USAGE_COLOR_TARGET},
+                                    {.texture = depth, .to = GPU_USAGE_DEPTH_TARGET}},
+                     2);
     gpu_cmd_begin_rendering(cmd, &(GpuRendering){.targets = {{color, true, {0, 0, 0, 1}}},
                                                  .target_count = 1,
                                                  .depth = {depth, true, {0}},
-                                                 .width = SIDE, .height = SIDE});
+                                                 .width = SIDE,
+                                                 .height = SIDE});
     gpu_cmd_bind_pipeline(cmd, pipeline);
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
     gpu_cmd_bind_vertices(cmd, buffer);
@@ -105,16 +120,15 @@ TEST_GPU(gpu, draws_with_depth_and_culling) {
     gpu_fixture_destroy(gpu);
 }
 
-// Depth is tested and sampled at once in its read-only layout, and read by compute without a barrier
-// between.
+// Depth is tested and sampled at once in its read-only layout, and read by compute without a
+// barrier between.
 TEST_GPU(gpu, depth_is_tested_and_sampled) {
     Gpu *gpu = gpu_fixture_create("depth_is_tested_and_sampled");
     // Upper right half; lower right half at the same depth; lower right half further away.
-    MeshVertex vertices[] = {vertex(1, -1, 0.5f, RED),     vertex(1, 1, 0.5f, RED),
-                             vertex(-1, 1, 0.5f, RED),     vertex(-1, -1, 0.5f, GREEN),
-                             vertex(1, -1, 0.5f, GREEN),   vertex(1, 1, 0.5f, GREEN),
-                             vertex(-1, -1, 0.25f, BLUE),  vertex(1, -1, 0.25f, BLUE),
-                             vertex(1, 1, 0.25f, BLUE)};
+    MeshVertex vertices[] = {
+        vertex(1, -1, 0.5f, RED),    vertex(1, 1, 0.5f, RED),    vertex(-1, 1, 0.5f, RED),
+        vertex(-1, -1, 0.5f, GREEN), vertex(1, -1, 0.5f, GREEN), vertex(1, 1, 0.5f, GREEN),
+        vertex(-1, -1, 0.25f, BLUE), vertex(1, -1, 0.25f, BLUE), vertex(1, 1, 0.25f, BLUE)};
     GpuBuffer buffer = make_vertices(gpu, vertices, COUNT_OF(vertices));
     GpuTexture color = make_target(gpu, "color", GPU_FORMAT_RGBA8);
     GpuTexture depth = make_target(gpu, "depth", GPU_FORMAT_D32F);
@@ -129,27 +143,36 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
     GpuBindLayout layout =
         gpu_fixture_layout(gpu, GPU_BINDING_SAMPLED_TEXTURE, GPU_BINDING_STORAGE_BUFFER, 2);
     GpuPipeline sample = gpu_fixture_compute(gpu, "test_sample.comp", layout, 0, NULL);
-    GpuSampler nearest = gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true});
+    GpuSampler nearest =
+        gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true});
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "depth group", .layout = layout,
+        gpu, &(GpuBindGroupDesc){.label = "depth group",
+                                 .layout = layout,
                                  .bindings = {{.texture = depth, .sampler = nearest, .depth = true},
                                               {.buffer = sampled}}});
 
     GpuCommands *cmd = gpu_frame_begin(gpu);
-    GpuRendering rendering = {.targets = {{color, true, {0, 0, 0, 1}}}, .target_count = 1,
-                              .depth = {depth, true, {0}}, .width = SIDE, .height = SIDE};
-    gpu_cmd_barriers(cmd, (GpuBarrier[]){{.texture = color, .to = GPU_USAGE_COLOR_TARGET},
-                                         {.texture = depth, .to = GPU_USAGE_DEPTH_TARGET}}, 2);
+    GpuRendering rendering = {.targets = {{color, true, {0, 0, 0, 1}}},
+                              .target_count = 1,
+                              .depth = {depth, true, {0}},
+                              .width = SIDE,
+                              .height = SIDE};
+    gpu_cmd_barriers(cmd,
+                     (GpuBarrier[]){{.texture = color, .to = GPU_USAGE_COLOR_TARGET},
+                                    {.texture = depth, .to = GPU_USAGE_DEPTH_TARGET}},
+                     2);
     gpu_cmd_begin_rendering(cmd, &rendering);
     gpu_cmd_bind_pipeline(cmd, write);
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
     gpu_cmd_bind_vertices(cmd, buffer);
     gpu_cmd_draw(cmd, 3, 1, 0, 0);
     gpu_cmd_end_rendering(cmd);
-    gpu_cmd_barriers(cmd, (GpuBarrier[]){{.texture = depth, .from = GPU_USAGE_DEPTH_TARGET,
-                                          .to = GPU_USAGE_DEPTH_TEST},
-                                         {.texture = color, .from = GPU_USAGE_COLOR_TARGET,
-                                          .to = GPU_USAGE_COLOR_TARGET}}, 2);
+    gpu_cmd_barriers(
+        cmd,
+        (GpuBarrier[]){
+            {.texture = depth, .from = GPU_USAGE_DEPTH_TARGET, .to = GPU_USAGE_DEPTH_TEST},
+            {.texture = color, .from = GPU_USAGE_COLOR_TARGET, .to = GPU_USAGE_COLOR_TARGET}},
+        2);
     rendering.targets[0].clear = rendering.depth.clear = false;
     rendering.depth_read_only = true;
     gpu_cmd_begin_rendering(cmd, &rendering);
@@ -195,8 +218,8 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
 
 static f32 half_to_f32(u16 h) {
     u32 exponent = h >> 10 & 31, mantissa = h & 1023;
-    f32 value = exponent ? ldexpf((f32)(mantissa + 1024), (int)exponent - 25)
-                         : ldexpf((f32)mantissa, -24);
+    f32 value =
+        exponent ? ldexpf((f32)(mantissa + 1024), (int)exponent - 25) : ldexpf((f32)mantissa, -24);
     return h >> 15 ? -value : value;
 }
 
@@ -213,7 +236,9 @@ static void blend_layers(GpuFormat format, GpuBlend blend, f32 out[4]) {
     GpuCommands *cmd = gpu_frame_begin(gpu);
     gpu_cmd_barriers(cmd, &(GpuBarrier){.texture = color, .to = GPU_USAGE_COLOR_TARGET}, 1);
     gpu_cmd_begin_rendering(cmd, &(GpuRendering){.targets = {{color, true, {1, 2, 0, 0}}},
-                                                 .target_count = 1, .width = SIDE, .height = SIDE});
+                                                 .target_count = 1,
+                                                 .width = SIDE,
+                                                 .height = SIDE});
     gpu_cmd_bind_pipeline(cmd, pipeline);
     gpu_cmd_bind_vertices(cmd, buffer);
     if (blend == GPU_BLEND_ADD) {
@@ -262,20 +287,25 @@ TEST_GPU(gpu, uploads_and_samples_every_mip) {
         texels[i][2] = (u8)(255 - i);
         texels[i][3] = (u8)(i % 3 * 100);
     }
-    GpuTexture texture = gpu_create_texture(
-        gpu, &(GpuTextureDesc){.label = "texture", .format = GPU_FORMAT_RGBA8, .width = WIDTH,
-                               .height = HEIGHT, .mip_count = MIPS, .sampled = true});
+    GpuTexture texture = gpu_create_texture(gpu, &(GpuTextureDesc){.label = "texture",
+                                                                   .format = GPU_FORMAT_RGBA8,
+                                                                   .width = WIDTH,
+                                                                   .height = HEIGHT,
+                                                                   .mip_count = MIPS,
+                                                                   .sampled = true});
     gpu_upload_texture(gpu, texture, texels, texel_count * sizeof *texels);
     gpu_upload_texture(gpu, texture, texels, texel_count * sizeof *texels); // again: still in order
-    GpuSampler nearest = gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true});
+    GpuSampler nearest =
+        gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true});
     GpuBindLayout layout =
         gpu_fixture_layout(gpu, GPU_BINDING_SAMPLED_TEXTURE, GPU_BINDING_STORAGE_BUFFER, 2);
     GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_sample.comp", layout, 0, NULL);
     GpuBuffer out = gpu_fixture_readback(gpu, WIDTH * HEIGHT * 16);
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
-                                 .bindings = {{.texture = texture, .sampler = nearest},
-                                              {.buffer = out}}});
+        gpu, &(GpuBindGroupDesc){
+                 .label = "group",
+                 .layout = layout,
+                 .bindings = {{.texture = texture, .sampler = nearest}, {.buffer = out}}});
     u32 first = 0;
     for (u32 m = 0; m < MIPS; m++) {
         u32 width = MAX(WIDTH >> m, 1), height = MAX(HEIGHT >> m, 1);
@@ -308,9 +338,12 @@ TEST_GPU(gpu, uploads_large_textures) {
         u64 count = (u64)sizes[t][0] * sizes[t][1] * sizes[t][2];
         u32 *texels = malloc(count * 4);
         for (u64 i = 0; i < count; i++) texels[i] = (u32)i * 2654435761u;
-        GpuTexture texture = gpu_create_texture(
-            gpu, &(GpuTextureDesc){.label = "large", .format = GPU_FORMAT_R32U, .width = sizes[t][0],
-                                   .height = sizes[t][1], .depth = sizes[t][2], .sampled = true});
+        GpuTexture texture = gpu_create_texture(gpu, &(GpuTextureDesc){.label = "large",
+                                                                       .format = GPU_FORMAT_R32U,
+                                                                       .width = sizes[t][0],
+                                                                       .height = sizes[t][1],
+                                                                       .depth = sizes[t][2],
+                                                                       .sampled = true});
         GpuBuffer out = gpu_fixture_readback(gpu, count * 4);
         gpu_upload_texture(gpu, texture, texels, count * 4);
         GpuCommands *cmd = gpu_frame_begin(gpu);
@@ -326,14 +359,16 @@ TEST_GPU(gpu, uploads_large_textures) {
 
 TEST_GPU(gpu, stores_to_a_texture) {
     Gpu *gpu = gpu_fixture_create("stores_to_a_texture");
-    GpuTexture texture = gpu_create_texture(
-        gpu, &(GpuTextureDesc){.label = "stored", .format = GPU_FORMAT_RGBA32F, .width = 20,
-                               .height = 12, .storage = true});
+    GpuTexture texture = gpu_create_texture(gpu, &(GpuTextureDesc){.label = "stored",
+                                                                   .format = GPU_FORMAT_RGBA32F,
+                                                                   .width = 20,
+                                                                   .height = 12,
+                                                                   .storage = true});
     GpuBindLayout layout = gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_TEXTURE, 0, 1);
     GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_store.comp", layout, 0, NULL);
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout,
-                                 .bindings = {{.texture = texture}}});
+        gpu, &(GpuBindGroupDesc){
+                 .label = "group", .layout = layout, .bindings = {{.texture = texture}}});
     GpuBuffer out = gpu_fixture_readback(gpu, 20 * 12 * 16);
     GpuCommands *cmd = gpu_frame_begin(gpu);
     gpu_cmd_barriers(cmd, &(GpuBarrier){.texture = texture, .to = GPU_USAGE_STORAGE_COMPUTE}, 1);

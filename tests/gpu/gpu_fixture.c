@@ -42,15 +42,20 @@ GpuBuffer gpu_fixture_readback(Gpu *gpu, u64 size) {
 
 GpuBindLayout gpu_fixture_layout(Gpu *gpu, GpuBindingKind first, GpuBindingKind second, u32 count) {
     GpuBindLayout layout = gpu_create_bind_layout(
-        gpu, &(GpuBindLayoutDesc){.label = "test layout", .kinds = {first, second}, .count = count});
+        gpu,
+        &(GpuBindLayoutDesc){.label = "test layout", .kinds = {first, second}, .count = count});
     assert_true(layout.id);
     return layout;
 }
 
 GpuPipeline gpu_fixture_compute(Gpu *gpu, const char *shader, GpuBindLayout layout, u32 spec_count,
                                 const u32 *spec) {
-    GpuPipelineDesc desc = {.label = shader, .compute = shader, .layouts = {layout},
-                            .layout_count = 1, .push_size = 16, .spec_count = spec_count};
+    GpuPipelineDesc desc = {.label = shader,
+                            .compute = shader,
+                            .layouts = {layout},
+                            .layout_count = 1,
+                            .push_size = 16,
+                            .spec_count = spec_count};
     for (u32 i = 0; i < spec_count; i++) desc.spec[i] = spec[i];
     GpuPipeline pipeline = gpu_create_pipeline(gpu, &desc);
     assert_true(pipeline.id);

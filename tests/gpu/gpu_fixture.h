@@ -12,8 +12,8 @@ void gpu_fixture_pin_driver(void);
 // With core and synchronisation validation. Skips the test if there is no device at all.
 Gpu *gpu_fixture_create(const char *label);
 Gpu *gpu_fixture_create_desc(GpuDesc desc);
-// Asserts that the validation layer had nothing to say, and that all named heaps but staging are empty
-// (the test has to destroy what it made).
+// Asserts that the validation layer had nothing to say, and that all named heaps but staging are
+// empty (the test has to destroy what it made).
 void gpu_fixture_destroy(Gpu *gpu);
 
 GpuBuffer gpu_fixture_readback(Gpu *gpu, u64 size);
