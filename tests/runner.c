@@ -103,7 +103,8 @@ void test_survived(void) { _exit(0); }
 
 void test_assert_died(const char *text, const char *file, int line) {
     int status = 0;
-    while (waitpid(death_child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(death_child, &status, 0) < 0 && errno == EINTR) {
+    }
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT) return;
     print_error("%s did not stop the program by an assertion\n", text);
     _fail(file, line);
@@ -144,7 +145,8 @@ __attribute__((noreturn)) static void child_main(const TestCase *test, int outpu
     setpgid(0, 0); // so that programs started by the test end with it
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
-    alarm(TIMEOUT_S); // its default action ends the child, whatever it hangs in
+    setvbuf(stdout, NULL, _IOLBF, 0); // what was said before a crash is kept
+    alarm(TIMEOUT_S);                 // its default action ends the child, whatever it hangs in
     shared->outcome = run_under_cmocka(test);
     exit(shared->outcome == OUTCOME_FAILED ? 1 : 0);
 }
@@ -170,7 +172,8 @@ static Outcome run_forked(const TestCase *test, bool verbose, char *note, size_t
     if (child == 0) child_main(test, output);
     setpgid(child, child); // whichever of the two comes first
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     kill(-child, SIGKILL); // what it left running; usually nobody
 
     Outcome outcome = shared->outcome;
@@ -205,8 +208,8 @@ static Outcome run_one(const TestCase *test, bool do_fork, bool verbose) {
              (int)getpid());
     char note[320] = "";
     f64 start = now_s();
-    Outcome outcome = do_fork ? run_forked(test, verbose, note, sizeof note)
-                              : run_under_cmocka(test);
+    Outcome outcome =
+        do_fork ? run_forked(test, verbose, note, sizeof note) : run_under_cmocka(test);
     f64 seconds = now_s() - start;
     remove_temp_dir();
 
@@ -229,12 +232,13 @@ static int compare_tests(const void *a, const void *b) {
 }
 
 static bool test_is_chosen(const TestCase *test, bool unit_only, char **filters, int filter_count) {
-    if (unit_only && test->kind != TEST_KIND_UNIT) return false;
+    if (unit_only && (test->kind & ~(u32)TEST_KIND_BAIT)) return false;
     char name[256];
     snprintf(name, sizeof name, "%s.%s", test->suite, test->name);
+    bool is_bait = test->kind & TEST_KIND_BAIT;
     for (int i = 0; i < filter_count; i++)
-        if (strstr(name, filters[i])) return true;
-    return filter_count == 0;
+        if (is_bait ? strcmp(name, filters[i]) == 0 : strstr(name, filters[i]) != NULL) return true;
+    return filter_count == 0 && !is_bait;
 }
 
 static void print_test(const TestCase *test) {
@@ -247,10 +251,14 @@ int main(int argc, char **argv) {
     bool list = false, unit_only = false, do_fork = true, verbose = false;
     int filter_count = 0;
     for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--list") == 0) list = true;
-        else if (strcmp(argv[i], "--unit") == 0) unit_only = true;
-        else if (strcmp(argv[i], "--no-fork") == 0) do_fork = false;
-        else if (strcmp(argv[i], "--verbose") == 0) verbose = true;
+        if (strcmp(argv[i], "--list") == 0)
+            list = true;
+        else if (strcmp(argv[i], "--unit") == 0)
+            unit_only = true;
+        else if (strcmp(argv[i], "--no-fork") == 0)
+            do_fork = false;
+        else if (strcmp(argv[i], "--verbose") == 0)
+            verbose = true;
         else if (argv[i][0] == '-') {
             fprintf(stderr,
                     "usage: %s [--list] [--unit] [--no-fork] [--verbose] [filter...]\n"
@@ -260,7 +268,8 @@ int main(int argc, char **argv) {
                     "  --verbose  show the output of passing tests too\n",
                     argv[0]);
             return 2;
-        } else argv[1 + filter_count++] = argv[i]; // never overtakes i
+        } else
+            argv[1 + filter_count++] = argv[i]; // never overtakes i
     }
 
     TestCase **tests = calloc(MAX(test_count, 1), sizeof *tests);

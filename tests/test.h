@@ -28,6 +28,7 @@ typedef enum TestKind {
     TEST_KIND_GPU = 1 << 0,    // needs a Vulkan device
     TEST_KIND_WINDOW = 1 << 1, // needs a display
     TEST_KIND_SLOW = 1 << 2,   // takes more than a second or two
+    TEST_KIND_BAIT = 1 << 3,   // meant to fail: runs only if a filter is its whole name
 } TestKind;
 
 typedef struct TestCase {
@@ -39,14 +40,14 @@ typedef struct TestCase {
 
 void test_register(TestCase *test);
 
-#define TEST_OF_KIND(suite, name, kind)                                                         \
-    static void test_##suite##_##name(void **state);                                            \
-    static TestCase test_case_##suite##_##name = {#suite, #name, (kind), test_##suite##_##name, \
-                                                  NULL};                                        \
-    __attribute__((constructor)) static void test_register_##suite##_##name(void) {             \
-        test_register(&test_case_##suite##_##name);                                             \
-    }                                                                                           \
-    static void test_##suite##_##name(__attribute__((unused)) void **state)
+#define TEST_OF_KIND(suite, name, kind)                                                            \
+    static void test_##suite##_##name(void **cmocka_state);                                        \
+    static TestCase test_case_##suite##_##name = {#suite, #name, (kind), test_##suite##_##name,    \
+                                                  NULL};                                           \
+    __attribute__((constructor)) static void test_register_##suite##_##name(void) {                \
+        test_register(&test_case_##suite##_##name);                                                \
+    }                                                                                              \
+    static void test_##suite##_##name(__attribute__((unused)) void **cmocka_state)
 
 #define TEST(suite, name)        TEST_OF_KIND(suite, name, TEST_KIND_UNIT)
 #define TEST_SLOW(suite, name)   TEST_OF_KIND(suite, name, TEST_KIND_SLOW)
@@ -69,13 +70,13 @@ void test_assert_near(f64 a, f64 b, f64 eps, const char *a_text, const char *b_t
                       const char *file, int line);
 
 // The call must end the program by LUZ_ASSERT (it runs in a child of its own, silenced).
-#define ASSERT_DIES(call)                                                      \
-    do {                                                                       \
-        if (test_fork_for_death()) {                                           \
-            call;                                                              \
-            test_survived();                                                   \
-        }                                                                      \
-        test_assert_died(#call, __FILE__, __LINE__);                           \
+#define ASSERT_DIES(call)                                                                          \
+    do {                                                                                           \
+        if (test_fork_for_death()) {                                                               \
+            call;                                                                                  \
+            test_survived();                                                                       \
+        }                                                                                          \
+        test_assert_died(#call, __FILE__, __LINE__);                                               \
     } while (0)
 bool test_fork_for_death(void);
 __attribute__((noreturn)) void test_survived(void);

@@ -33,7 +33,7 @@ static struct {
     u32 active;       // workers inside the loop
     u64 serial;       // number of the loop, so that a worker enters each once
     bool open, stop;
-    Loop loop;             // const while open or active > 0
+    Loop loop;                // const while open or active > 0
     atomic_ullong next_range; // 64-bit: threads overshoot it without wrapping
 } pool = {.caller_mutex = PTHREAD_MUTEX_INITIALIZER,
           .mutex = PTHREAD_MUTEX_INITIALIZER,

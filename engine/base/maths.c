@@ -19,9 +19,9 @@
 #include <cglm/clipspace/ortho_rh_zo.h>
 #undef vec3
 
-#define PI_F64    3.141592653589793238
-#define LN2_F64   0.693147180559945309
-#define DEG_F64   (PI_F64 / 180.0)
+#define PI_F64  3.141592653589793238
+#define LN2_F64 0.693147180559945309
+#define DEG_F64 (PI_F64 / 180.0)
 
 // c[0] + c[1] x + c[2] x^2 ... by Horner's rule, written so that it unrolls.
 static inline f64 horner(const f64 *c, u32 count, f64 x) {
@@ -66,8 +66,9 @@ typedef struct SinCos {
 // |r| <= pi/4, relative error below 1e-16: the first term left out is r^17/17! (5e-17) and
 // r^18/18! (2e-18).
 static SinCos sin_cos_kernel(f64 r) {
-    static const f64 s[] = {1.0,          -1.0 / 6,          1.0 / 120,          -1.0 / 5040,
-                            1.0 / 362880, -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
+    static const f64 s[] = {
+        1.0,          -1.0 / 6,          1.0 / 120,          -1.0 / 5040,
+        1.0 / 362880, -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
     static const f64 c[] = {1.0,
                             -1.0 / 2,
                             1.0 / 24,
@@ -84,10 +85,14 @@ static SinCos sin_cos_kernel(f64 r) {
 // The kernel's angle plus `quarters` right angles.
 static SinCos sin_cos_turn(SinCos k, i64 quarters) {
     switch (quarters & 3) {
-    case 0: return k;
-    case 1: return (SinCos){k.cos, -k.sin};
-    case 2: return (SinCos){-k.sin, -k.cos};
-    default: return (SinCos){-k.cos, k.sin};
+    case 0:
+        return k;
+    case 1:
+        return (SinCos){k.cos, -k.sin};
+    case 2:
+        return (SinCos){-k.sin, -k.cos};
+    default:
+        return (SinCos){-k.cos, k.sin};
     }
 }
 
@@ -229,9 +234,7 @@ _Static_assert(sizeof(Mat4) == sizeof(f32[4][4]), "Mat4 is cglm's mat4");
 #define CGLM(matrix) ((cglm_vec4 *)(matrix).m)
 typedef f32 cglm_vec4[4];
 
-Mat4 mat4_identity(void) {
-    return (Mat4){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-}
+Mat4 mat4_identity(void) { return (Mat4){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}; }
 
 Mat4 mat4_mul(Mat4 a, Mat4 b) {
     Mat4 out;
@@ -258,8 +261,9 @@ Vec4 mat4_mul_vec4(Mat4 a, Vec4 v) {
 }
 
 // cglm has no infinite reversed form. z_clip = near, w_clip = -z_view, so depth = near / -z_view
-// (Reed, "Depth precision visualized", 2015: with float depth the error is nearly uniform in log z).
-// y points up in clip space; the renderer flips it with a negative viewport height.
+// (Reed, "Depth precision visualized", 2015: with float depth the relative error is nearly the
+// same everywhere). y points up in clip space; the renderer flips it with a negative viewport
+// height.
 Mat4 mat4_perspective_reversed(f32 fov_y_rad, f32 aspect, f32 near) {
     f32 focal = 1.0f / det_tan(fov_y_rad * 0.5f);
     Mat4 out = {{0}};
@@ -298,10 +302,14 @@ Mat34 mat34_from_trs(Vec3 position, Vec3 rotation_deg, Vec3 scale) {
     SinCos z = sin_cos_deg(rotation_deg.z);
     // Ry * Rx * Rz, each column times its scale; f64 until the last step.
     f64 r[9] = {
-        y.cos * z.cos + y.sin * x.sin * z.sin,  -y.cos * z.sin + y.sin * x.sin * z.cos,
-        y.sin * x.cos,                          x.cos * z.sin,
-        x.cos * z.cos,                          -x.sin,
-        -y.sin * z.cos + y.cos * x.sin * z.sin, y.sin * z.sin + y.cos * x.sin * z.cos,
+        y.cos * z.cos + y.sin * x.sin * z.sin,
+        -y.cos * z.sin + y.sin * x.sin * z.cos,
+        y.sin * x.cos,
+        x.cos * z.sin,
+        x.cos * z.cos,
+        -x.sin,
+        -y.sin * z.cos + y.cos * x.sin * z.sin,
+        y.sin * z.sin + y.cos * x.sin * z.cos,
         y.cos * x.cos,
     };
     f64 s[3] = {scale.x, scale.y, scale.z};
@@ -377,9 +385,10 @@ f32 mat34_max_scale(const Mat34 *a) {
     return MAX(x, MAX(y, z));
 }
 
-// With R = Ry Rx Rz: R12 = -sin x; R02, R22 = cos x (sin y, cos y); R10, R11 = cos x (sin z, cos z).
-// A mirrored matrix (negative determinant) is read as one whose x scale is negative. Looking
-// straight up or down (cos x = 0) only y +- z is defined: z is taken as 0.
+// With R = Ry Rx Rz: R12 = -sin x; (R02, R22) = cos x (sin y, cos y);
+// (R10, R11) = cos x (sin z, cos z). A mirrored matrix (negative determinant) is read as one whose
+// x scale is negative. Looking straight up or down (cos x = 0) only y +- z is defined: z is taken
+// as 0.
 Vec3 mat34_rotation_deg(const Mat34 *a) {
     Vec3 x = vec3_normalize(mat34_basis(a, 0)), y = vec3_normalize(mat34_basis(a, 1));
     Vec3 z = vec3_normalize(mat34_basis(a, 2));

@@ -4,6 +4,7 @@
 // the order of ENGINE_COMPONENTS. Does not: hold any code; a component is data.
 #include "components.h"
 
-#define X(Name, name, COLUMNS, singleton, help) COMPONENT_DEFINE(Name, name, COLUMNS, singleton, help)
+#define X(Name, name, COLUMNS, singleton, help)                                                    \
+    COMPONENT_DEFINE(Name, name, COLUMNS, singleton, help)
 ENGINE_COMPONENTS(X)
 #undef X

@@ -97,9 +97,15 @@ static u32 column_default(const ColumnDesc *desc) {
         u32 u;
     } value;
     switch (desc->type) {
-    case COLUMN_F32: value.f = (f32)desc->initial; break;
-    case COLUMN_I32: value.i = (i32)desc->initial; break;
-    default: value.u = (u32)desc->initial; break;
+    case COLUMN_F32:
+        value.f = (f32)desc->initial;
+        break;
+    case COLUMN_I32:
+        value.i = (i32)desc->initial;
+        break;
+    default:
+        value.u = (u32)desc->initial;
+        break;
     }
     return value.u;
 }

@@ -27,7 +27,7 @@ World *world_create(u64 seed) {
     LUZ_ASSERT(world);
     world->seed = seed;
     world->stamp = 1;
-    world->entity_slots = 1; // slot 0 is nobody's
+    world->entity_slots = 1;   // slot 0 is nobody's
     world->name_text_size = 1; // offset 0 is "no name", and reads as ""
     world->name_text_cap = KIB(4);
     world->name_text = array_resize(NULL, world->name_text_cap, 1);
@@ -36,7 +36,7 @@ World *world_create(u64 seed) {
     world->point_list_cap = LISTS_FIRST;
     world->point_first = array_resize(NULL, world->point_list_cap + 1, sizeof(u32));
     world->point_first[0] = world->point_first[1] = 0;
-#define X(Name, name, ...)                                                 \
+#define X(Name, name, ...)                                                                         \
     LUZ_ASSERT(world_register_component(world, &name##_component) == COMPONENT_##name);
     ENGINE_COMPONENTS(X)
 #undef X
@@ -261,8 +261,9 @@ u64 table_hash(const Table *table) {
 
 u64 world_hash(const World *world) {
     u64 slots = world->entity_slots;
-    u64 head[] = {world->seed, world->tick, slots, world->free_count, world->point_list_count,
-                  world->component_count};
+    u64 head[] = {
+        world->seed,           world->tick, slots, world->free_count, world->point_list_count,
+        world->component_count};
     u64 hash = hash_bytes(head, sizeof head, 0);
     if (world->entity_slots_cap > 0) {
         hash = hash_bytes(world->generation, slots * sizeof *world->generation, hash);

@@ -103,7 +103,8 @@ Bytes world_save(const World *world, Arena *arena) {
     Writer counter = {0};
     write_world(&counter, world, 0, 0);
     if (!arena_can_push(arena, counter.size, 16)) {
-        LOG(WORLD_LIMIT, "saved world of %llu bytes does not fit", (unsigned long long)counter.size);
+        LOG(WORLD_LIMIT, "saved world of %llu bytes does not fit",
+            (unsigned long long)counter.size);
         return (Bytes){0};
     }
     Writer writer = {.out = arena_push(arena, counter.size, 16)};
@@ -241,13 +242,18 @@ static bool read_points(Reader *reader, World *world) {
 static bool values_fit(const World *world, const ColumnDesc *desc, const u8 *values, u32 count) {
     u32 limit;
     switch (desc->type) {
-    case COLUMN_BOOL: limit = 1; break;
-    case COLUMN_POINTS: limit = world->point_list_count - 1; break;
+    case COLUMN_BOOL:
+        limit = 1;
+        break;
+    case COLUMN_POINTS:
+        limit = world->point_list_count - 1;
+        break;
     case COLUMN_ENUM:
         limit = 0;
         for (const char *word = desc->unit; *word; word++) limit += *word == ' ';
         break;
-    default: return true;
+    default:
+        return true;
     }
     for (u32 i = 0; i < count; i++) {
         u32 value;

@@ -132,7 +132,7 @@ TEST(file, size_limits) {
     assert_true(file_root_read(&f.root, "plain", 10, &f.arena, &bytes));
     assert_false(file_root_read(&f.root, "plain", 9, &f.arena, &bytes));
     assert_false(file_read(test_temp_path("root/plain"), 9, &f.arena, &bytes));
-    assert_int_equal(truncate(test_temp_path("root/empty"), 1ll << 40), 0); // sparse, 1 TiB
+    assert_int_equal(truncate(test_temp_path("root/empty"), 1ll << 40), 0);       // sparse, 1 TiB
     assert_false(file_root_read(&f.root, "empty", UINT64_MAX, &f.arena, &bytes)); // arena too small
     assert_int_equal(log_count(LOG_FILE_READ), 3);
     fixture_destroy(&f);
@@ -253,8 +253,12 @@ TEST(file, makes_directories) {
 TEST(file, splits_paths) {
     static const struct {
         const char *path, *directory, *name;
-    } cases[] = {{"a/b/c.toml", "a/b", "c.toml"}, {"c.toml", ".", "c.toml"}, {"/c", "/", "c"},
-                 {"a/", "a", ""},                 {"", ".", ""},             {"/a/b", "/a", "b"}};
+    } cases[] = {{"a/b/c.toml", "a/b", "c.toml"},
+                 {"c.toml", ".", "c.toml"},
+                 {"/c", "/", "c"},
+                 {"a/", "a", ""},
+                 {"", ".", ""},
+                 {"/a/b", "/a", "b"}};
     for (u32 i = 0; i < COUNT_OF(cases); i++) {
         char directory[16];
         const char *name;

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 #define ITEMS 10007 // a prime: no grain divides it
 
@@ -20,8 +21,7 @@ static void mark(void *context, u32 begin, u32 end, u32 thread_index) {
     Marks *marks = context;
     // Ranges start at multiples of the grain and are whole but for the last.
     if (begin % marks->grain || end <= begin || end > marks->count ||
-        (end - begin != marks->grain && end != marks->count) ||
-        thread_index >= marks->threads)
+        (end - begin != marks->grain && end != marks->count) || thread_index >= marks->threads)
         atomic_fetch_add(&marks->wrong, 1);
     atomic_fetch_add(&marks->ranges, 1);
     atomic_fetch_or(&marks->thread_mask, 1u << (thread_index & 31));
@@ -82,6 +82,22 @@ TEST(jobs, thread_count_defaults_and_is_capped) {
     assert_true(jobs_thread_count() >= 1);
     jobs_start(1000); // restarts
     assert_int_equal(jobs_thread_count(), JOBS_THREADS_MAX);
+    jobs_stop();
+}
+
+static void mark_slowly(void *context, u32 begin, u32 end, u32 thread_index) {
+    (void)thread_index;
+    usleep(begin % 3 * 1000); // somebody is always late
+    for (u32 i = begin; i < end; i++) ((u8 *)context)[i]++;
+}
+
+TEST(jobs, returns_after_the_slowest_range) {
+    jobs_start(4);
+    for (u32 round = 0; round < 20; round++) {
+        u8 hits[9] = {0};
+        jobs_for(9, 1, mark_slowly, hits);
+        for (u32 i = 0; i < 9; i++) assert_int_equal(hits[i], 1);
+    }
     jobs_stop();
 }
 

@@ -115,8 +115,9 @@ static void assert_same_bits(f32 got, f32 want) {
 }
 
 TEST(maths, det_functions_at_the_edges) {
-    static const f32 values[] = {0.0f,     -0.0f,    1.0f,     -1.0f, 0.5f, -0.5f,  2.0f, -3.0f,
-                                 INFINITY, -INFINITY, NAN, FLT_MIN, FLT_MAX, -FLT_MAX, 0x1p-149f};
+    static const f32 values[] = {0.0f,  -0.0f,   1.0f,    -1.0f,    0.5f,
+                                 -0.5f, 2.0f,    -3.0f,   INFINITY, -INFINITY,
+                                 NAN,   FLT_MIN, FLT_MAX, -FLT_MAX, 0x1p-149f};
     for (u32 i = 0; i < COUNT_OF(values); i++) {
         f32 x = values[i];
         assert_same_bits(det_exp(x), (f32)exp(x));

@@ -51,9 +51,9 @@ static f64 correlation(u64 seed_a, u64 stream_a, u64 lag_a, u64 seed_b, u64 stre
 
 TEST(random, streams_seeds_and_counters_are_uncorrelated) {
     for (u64 other = 1; other <= 8; other *= 2) {
-        ASSERT_NEAR(correlation(9, 0, 0, 9, other), 0, 0.016);        // neighbouring streams
-        ASSERT_NEAR(correlation(9, 5, 0, 9 + other, 5), 0, 0.016);    // neighbouring seeds
-        ASSERT_NEAR(correlation(9, 5, other, 9, 5), 0, 0.016);        // shifted against itself
+        ASSERT_NEAR(correlation(9, 0, 0, 9, other), 0, 0.016);     // neighbouring streams
+        ASSERT_NEAR(correlation(9, 5, 0, 9 + other, 5), 0, 0.016); // neighbouring seeds
+        ASSERT_NEAR(correlation(9, 5, other, 9, 5), 0, 0.016);     // shifted against itself
         ASSERT_NEAR(correlation(9, 5, 0, 9 ^ (other << 40), 5), 0, 0.016);
     }
 }

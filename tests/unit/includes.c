@@ -59,9 +59,9 @@ static const struct {
     const char *prefix;
     u32 rooms;
 } libraries[] = {
-    {"vulkan/", GPU},    {"volk.h", GPU}, {"vk_mem_alloc.h", GPU}, {"glslang/", GPU},
-    {"GLFW/", APP},      {"imgui", APP},  {"tiny_gltf.h", ASSET},  {"glm/", ASSET},
-    {"toml++/", LEVEL},  {"cglm/", BASE},
+    {"vulkan/", GPU},   {"volk.h", GPU}, {"vk_mem_alloc.h", GPU}, {"glslang/", GPU},
+    {"GLFW/", APP},     {"imgui", APP},  {"tiny_gltf.h", ASSET},  {"glm/", ASSET},
+    {"toml++/", LEVEL}, {"cglm/", BASE},
 };
 
 static const char *const cpp_files[] = {"engine/asset/gltf.cpp", "engine/app/debug_ui.cpp",
@@ -309,11 +309,17 @@ TEST(includes, scanner_knows_where_cpp_may_be) {
         const char *path;
         u32 problems;
     } cases[] = {
-        {"engine/base/a.c", 0},        {"engine/base/a.cpp", 1},
-        {"engine/asset/gltf.cpp", 0},  {"engine/asset/other.cpp", 1},
-        {"engine/level/toml.cpp", 0},  {"engine/level/parse.cpp", 0},
-        {"engine/level/parse.cc", 1},  {"engine/app/debug_ui.cpp", 0},
-        {"engine/gpu/shader_compile.cpp", 0}, {"game/main.cpp", 1}, {"tools/a.hpp", 1},
+        {"engine/base/a.c", 0},
+        {"engine/base/a.cpp", 1},
+        {"engine/asset/gltf.cpp", 0},
+        {"engine/asset/other.cpp", 1},
+        {"engine/level/toml.cpp", 0},
+        {"engine/level/parse.cpp", 0},
+        {"engine/level/parse.cc", 1},
+        {"engine/app/debug_ui.cpp", 0},
+        {"engine/gpu/shader_compile.cpp", 0},
+        {"game/main.cpp", 1},
+        {"tools/a.hpp", 1},
     };
     for (u32 i = 0; i < COUNT_OF(cases); i++) {
         Report report = {.quiet = true};

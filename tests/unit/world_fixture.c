@@ -17,11 +17,17 @@ static u32 fixture_value(const World *world, const ColumnDesc *desc, u64 counter
     u32 bits = random_u32(77, 0, counter);
     f32 number = random_range(77, 1, counter, -100, 100);
     switch (desc->type) {
-    case COLUMN_F32: memcpy(&bits, &number, sizeof bits); return bits;
-    case COLUMN_BOOL: return bits & 1;
-    case COLUMN_ENUM: return bits % 2; // every list of words has two
-    case COLUMN_POINTS: return bits % world->point_list_count;
-    default: return bits; // numbers, handles that may be stale, ids
+    case COLUMN_F32:
+        memcpy(&bits, &number, sizeof bits);
+        return bits;
+    case COLUMN_BOOL:
+        return bits & 1;
+    case COLUMN_ENUM:
+        return bits % 2; // every list of words has two
+    case COLUMN_POINTS:
+        return bits % world->point_list_count;
+    default:
+        return bits; // numbers, handles that may be stale, ids
     }
 }
 

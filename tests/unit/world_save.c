@@ -205,11 +205,58 @@ TEST(world_save, hostile_blocks_never_break_a_world) {
     arena_destroy(&arena);
 }
 
+static void assert_refused(World *target, u8 *block, u64 size) {
+    memcpy(block + 8, &size, sizeof size);
+    write_checksum(block, size);
+    u64 before = world_hash(target);
+    assert_false(world_load(target, (Bytes){block, size}));
+    assert_true(world_hash(target) == before);
+}
+
+TEST(world_save, a_free_slot_listed_twice_is_refused) {
+    Arena arena = arena_for_test();
+    World *world = fixture_full_world(1), *target = fixture_world(2);
+    Bytes saved = world_save(world, &arena);
+    u8 *block = (u8 *)saved.data;
+    // After seed, tick, slots, generations and alive flags: the stack's count, then the stack.
+    u8 *stack = block + HEAD_SIZE + 8 + 4 + 4 + (world->entity_slots - 1) * 3;
+    u32 count;
+    memcpy(&count, stack, sizeof count);
+    assert_int_equal(count, world->free_count);
+    memcpy(stack + 4, stack + 8, 4);
+    log_set_level(LOG_SEVERITY_NONE);
+    assert_refused(target, block, saved.size);
+    world_destroy(world);
+    world_destroy(target);
+    arena_destroy(&arena);
+}
+
+// More rows than there can be entities, with bytes enough to back them.
+TEST(world_save, more_rows_than_entities_are_refused) {
+    Arena arena = arena_for_test();
+    World *world = fixture_full_world(1), *target = fixture_world(2);
+    Bytes saved = world_save(world, &arena);
+    const u8 *name = memmem(saved.data, saved.size, "light", sizeof "light");
+    assert_non_null(name);
+    u64 head = (u64)(name - (const u8 *)saved.data) + sizeof "light"; // up to the row count
+    u32 rows = ENTITY_CAP + 1;
+    u64 size = saved.size + rows * 4ull * 50;
+    u8 *block = calloc(1, size);
+    memcpy(block, saved.data, head);
+    memcpy(block + head, &rows, sizeof rows);
+    log_set_level(LOG_SEVERITY_NONE);
+    assert_refused(target, block, size);
+    free(block);
+    world_destroy(world);
+    world_destroy(target);
+    arena_destroy(&arena);
+}
+
 // ---- other versions of a component ----
 
-#define OLD_COLUMNS(C)                                       \
-    C(F32, ratio, "", 0.5, "ratio", 0, 1, "a float")         \
-    C(U32, gone, "", 0, "", 0, 0, "no longer there")         \
+#define OLD_COLUMNS(C)                                                                             \
+    C(F32, ratio, "", 0.5, "ratio", 0, 1, "a float")                                               \
+    C(U32, gone, "", 0, "", 0, 0, "no longer there")                                               \
     C(F32, offset, "", 0, "", 0, 0, "has another type today")
 TABLE_STRUCT(Old, OLD_COLUMNS)
 static const ColumnDesc old_columns[] = {OLD_COLUMNS(COLUMN_DESC_)};

@@ -12,7 +12,7 @@ TEST(world, spawns_and_despawns) {
     assert_true(a != ENTITY_NONE && b != ENTITY_NONE && a != b);
     assert_true(world_alive(world, a) && world_alive(world, b));
     assert_false(world_alive(world, ENTITY_NONE));
-    assert_false(world_alive(world, ENTITY_INDEX(a)));          // no generation
+    assert_false(world_alive(world, ENTITY_INDEX(a)));               // no generation
     assert_false(world_alive(world, a + (1u << ENTITY_INDEX_BITS))); // from the future
     assert_false(world_alive(world, UINT32_MAX));
     table_add(world->tables[COMPONENT_light], a);
@@ -223,6 +223,16 @@ TEST(world, hash_is_a_function_of_history) {
     assert_true(world_hash(a) != before);
     world_despawn(a, spawned);
     assert_true(world_hash(a) != before); // its generation went up
+    // The same dead in another order: the next handles will differ.
+    Entity x[2], y[2];
+    for (u32 i = 0; i < 2; i++) x[i] = world_spawn(b);
+    World *d = fixture_full_world(3);
+    for (u32 i = 0; i < 2; i++) y[i] = world_spawn(d);
+    assert_true(world_hash(b) == world_hash(d));
+    world_despawn(b, x[0]), world_despawn(b, x[1]);
+    world_despawn(d, y[1]), world_despawn(d, y[0]);
+    assert_true(world_hash(b) != world_hash(d));
+    world_destroy(d);
     world_destroy(a);
     world_destroy(b);
     world_destroy(c);
