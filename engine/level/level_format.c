@@ -107,7 +107,7 @@ static const char *format_comment(Formatter *f, const char *at, u64 spaces) {
 static const char *format_header(Formatter *f, const char *at) {
     open_header(f);
     f->blank_lines = 0;
-    while (*at && *at != '\n' && *at != '#') {
+    while (*at && *at != '\n' && at[strspn(at, " \t")] != '#') {
         if (*at == '"' || *at == '\'') {
             const char *end = string_end(at);
             put(f, at, (u64)(end - at), false);

@@ -86,10 +86,16 @@ const LevelName *level_names_find(const LevelNames *names, LevelNameKind kind, c
 
 // --- Values (level_values.c) ---
 
+// References, textures and points get their ids when all rows are there, in the order of the tables:
+// ids are then a function of the world and not of the order of the text. Until then a cell holds
+// LATE_VALUE | index, which no id of a fresh world or store can be.
+#define LATE_VALUE 0x80000000u
+
 typedef enum LevelValueKind {
     VALUE_BITS,      // bits are what goes into the columns
     VALUE_REFERENCE, // bits[0] is an index into reader->references
-    VALUE_POINTS,    // bits[0] is an index into reader->points, or UINT32_MAX for none
+    VALUE_TEXTURE,   // bits[0] is an index into reader->textures
+    VALUE_POINTS,    // bits[0] is an index into reader->points
 } LevelValueKind;
 
 typedef struct LevelValue {
@@ -108,6 +114,15 @@ typedef struct LevelReference {
     Entity target;       // of a global name, once found
     bool is_reported;
 } LevelReference;
+
+typedef struct LevelTexture {
+    const char *path;
+    const char *label; // of the key, for the message
+    TomlPlace place;
+    TextureKind kind;
+    u32 id;
+    bool is_loaded;
+} LevelTexture;
 
 typedef struct LevelPoints {
     f32 *xyz;
@@ -200,11 +215,12 @@ typedef struct LevelReader {
     LevelKeys keys;
     LevelNames names;
     LevelReference *references;
+    LevelTexture *textures;
     LevelPoints *points;
     LevelAssignment *assignments;
     LevelPending *pendings;
-    u32 reference_count, reference_cap, point_count, point_cap, assignment_count, assignment_cap,
-        pending_count, pending_cap, file_cap;
+    u32 reference_count, reference_cap, texture_count, texture_cap, point_count, point_cap,
+        assignment_count, assignment_cap, pending_count, pending_cap, file_cap;
     LevelPrefab *prefabs;
     Blueprint *entities;
     u32 prefab_count, entity_count;
@@ -292,7 +308,7 @@ const char *level_material_name(const Model *model, u32 index, const char *model
 
 // Rows for all blueprints, references, drawables.
 void level_spawn_all(LevelReader *reader);
-// Writes a value into the cells of an entity that has the component.
+// Writes a value into a cell of an entity that has the component.
 void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column, LevelValueKind kind,
                   u32 bits);
 void level_spawn_all_drawables(LevelReader *reader, TomlPlace place);

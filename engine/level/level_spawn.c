@@ -13,7 +13,6 @@
 #include <string.h>
 
 static u32 point_list(LevelReader *reader, u32 index) {
-    if (index == UINT32_MAX) return 0;
     LevelPoints *points = &reader->points[index];
     if (points->list) return points->list;
     // Equal lists are one, so that ids depend on what is used and not on how it is written. They are
@@ -37,14 +36,17 @@ void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column,
     Table *table = reader->world->tables[component];
     u32 row = table_row(table, entity);
     u32 *cells = table_columns(table)[column];
-    switch (kind) {
-    case VALUE_BITS: cells[row] = bits; break;
-    case VALUE_POINTS: cells[row] = point_list(reader, bits); break;
-    case VALUE_REFERENCE:
+    cells[row] = kind == VALUE_BITS ? bits : LATE_VALUE | bits;
+    if (kind == VALUE_REFERENCE)
         LEVEL_APPEND(&reader->scratch, reader->pendings, reader->pending_count, reader->pending_cap,
                      (LevelPending){entity, (u16)component, (u16)column, bits});
-        break;
-    }
+}
+
+// Writes what a reference means, unless another value has overridden it since.
+static void settle_pending(LevelReader *reader, const LevelPending *pending, Entity target) {
+    Table *table = reader->world->tables[pending->component];
+    u32 *cell = (u32 *)table_columns(table)[pending->column] + table_row(table, pending->entity);
+    if (*cell == (LATE_VALUE | pending->reference)) *cell = target;
 }
 
 static u64 all_components(const LevelReader *reader, const Blueprint *blueprint) {
@@ -147,8 +149,7 @@ static void spawn_prefab(LevelReader *reader, u32 index, const char *name, Entit
             level_error(reader, reference->place, NULL, "'%s' has no %s", reference->name,
                         reader->keys.components[reference->component].desc->name);
         }
-        u32 *cells = table_columns(reader->world->tables[pending->component])[pending->column];
-        cells[table_row(reader->world->tables[pending->component], pending->entity)] = target;
+        settle_pending(reader, pending, target);
         // Parents stay listed for the search for cycles.
         if (pending->component != COMPONENT_transform) pending->entity = ENTITY_NONE;
     }
@@ -243,9 +244,7 @@ static void settle_references(LevelReader *reader) {
         LevelReference *reference = &reader->references[pending->reference];
         if (pending->entity == ENTITY_NONE || reference->local != UINT32_MAX) continue;
         if (!reference->target && !reference->is_reported) find_target(reader, reference);
-        u32 *cells = table_columns(reader->world->tables[pending->component])[pending->column];
-        cells[table_row(reader->world->tables[pending->component], pending->entity)] =
-            reference->target;
+        settle_pending(reader, pending, reference->target);
     }
     // A prefab that nothing uses, a value that another overrides: names there are checked as well.
     for (u32 i = 0; i < reader->reference_count; i++) {
@@ -253,6 +252,36 @@ static void settle_references(LevelReader *reader) {
         if (reference->local == UINT32_MAX && !reference->target && !reference->is_reported)
             find_target(reader, reference);
     }
+}
+
+static u32 load_texture(LevelReader *reader, LevelTexture *texture) {
+    if (texture->is_loaded) return texture->id;
+    texture->is_loaded = true;
+    texture->id =
+        asset_load_texture(reader->store, reader->root, texture->path, texture->kind);
+    if (texture->id <= 1) // 1 is the checker for damaged images
+        level_error(reader, texture->place, NULL, "%s: '%s' is damaged or not an image",
+                    texture->label, texture->path);
+    return texture->id;
+}
+
+static void settle_textures_and_points(LevelReader *reader) {
+    for (u32 i = 0; i < reader->world->component_count; i++) {
+        Table *table = reader->world->tables[i];
+        for (u32 column = 0; column < table->desc->column_count; column++) {
+            ColumnType type = table->desc->columns[column].type;
+            if (type != COLUMN_TEXTURE && type != COLUMN_POINTS) continue;
+            u32 *cells = table_columns(table)[column];
+            for (u32 row = 0; row < table->count; row++) {
+                if (!(cells[row] & LATE_VALUE)) continue;
+                u32 index = cells[row] & ~LATE_VALUE;
+                cells[row] = type == COLUMN_POINTS ? point_list(reader, index)
+                                                   : load_texture(reader, &reader->textures[index]);
+            }
+        }
+    }
+    // What nothing uses in the end is checked as well.
+    for (u32 i = 0; i < reader->texture_count; i++) load_texture(reader, &reader->textures[i]);
 }
 
 static void report_parent_cycle(LevelReader *reader, Entity entity) {
@@ -359,5 +388,6 @@ void level_spawn_all(LevelReader *reader) {
     for (u32 i = 0; i < reader->entity_count; i++)
         spawn_copies(reader, &reader->entities[i], NULL, ENTITY_NONE, 0);
     settle_references(reader);
+    settle_textures_and_points(reader);
     cut_parent_cycles(reader);
 }

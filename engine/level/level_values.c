@@ -249,15 +249,19 @@ static bool read_reference(LevelReader *reader, const TomlNode *node, const char
 }
 
 static bool read_texture(LevelReader *reader, const TomlNode *node, const char *label,
-                         const ColumnDesc *column, u32 *out) {
+                         const ColumnDesc *column, LevelValue *out) {
     const char *path;
-    if (node->type == TOML_STRING && node->string[0] == 0) return true; // "" = none
+    if (node->type == TOML_STRING && node->string[0] == 0) return true; // "" = none: bits 0
     if (!level_read_path(reader, node, label, &path)) return false;
     TextureKind kind = strcmp(column->unit, "srgb") == 0 ? TEXTURE_SRGB : TEXTURE_LINEAR;
-    *out = asset_load_texture(reader->store, reader->root, path, kind);
-    if (*out > 1) return true; // 1 is the checker for damaged images
-    level_error(reader, node->place, NULL, "%s: '%s' is damaged or not an image", label, path);
-    return false;
+    out->kind = VALUE_TEXTURE;
+    out->bits[0] = reader->texture_count;
+    LEVEL_APPEND(&reader->scratch, reader->textures, reader->texture_count, reader->texture_cap,
+                 (LevelTexture){.path = path,
+                                .label = arena_copy_string(&reader->scratch, label),
+                                .place = node->place,
+                                .kind = kind});
+    return true;
 }
 
 static bool read_points(LevelReader *reader, const TomlNode *node, const char *label,
@@ -268,9 +272,7 @@ static bool read_points(LevelReader *reader, const TomlNode *node, const char *l
                     node->count, LEVEL_POINTS_MAX);
         return false;
     }
-    out->kind = VALUE_POINTS;
-    out->bits[0] = UINT32_MAX;
-    if (node->count == 0) return true;
+    if (node->count == 0) return true; // [] = none: bits 0
     f64 limit = level_column_has_range(column) ? MAX(fabs(column->min), fabs(column->max)) : 1e5;
     f32 *xyz = ARENA_PUSH(&reader->scratch, f32, node->count * 3);
     u32 count = 0;
@@ -280,6 +282,7 @@ static bool read_points(LevelReader *reader, const TomlNode *node, const char *l
         is_good &= level_read_vec3(reader, point, label, limit, &p);
         memcpy(xyz + count * 3, &p, sizeof p);
     }
+    out->kind = VALUE_POINTS;
     out->bits[0] = reader->point_count;
     LEVEL_APPEND(&reader->scratch, reader->points, reader->point_count, reader->point_cap,
                  (LevelPoints){.xyz = xyz, .count = count});
@@ -316,8 +319,8 @@ static bool read_scalar(LevelReader *reader, const TomlNode *node, const char *l
         *bits = boolean;
         return true;
     case COLUMN_ENUM: return read_enum(reader, node, label, column, bits);
-    case COLUMN_TEXTURE: return read_texture(reader, node, label, column, bits);
     case COLUMN_ENTITY:
+    case COLUMN_TEXTURE:
     case COLUMN_POINTS: break;
     }
     return false;
@@ -331,6 +334,7 @@ bool level_read_value(LevelReader *reader, const TomlNode *node, const char *lab
     if (key->count == 1) {
         if (column->type == COLUMN_ENTITY)
             return read_reference(reader, node, label, column, prefab, out);
+        if (column->type == COLUMN_TEXTURE) return read_texture(reader, node, label, column, out);
         if (column->type == COLUMN_POINTS) return read_points(reader, node, label, column, out);
         return read_scalar(reader, node, label, column, &out->bits[0]);
     }
@@ -356,7 +360,6 @@ bool level_read_value(LevelReader *reader, const TomlNode *node, const char *lab
     u32 i = 0;
     for (const TomlNode *element = node->first; element; element = element->next, i++) {
         const ColumnDesc *cell = &owner->desc->columns[key->column + i];
-        if (cell->type == COLUMN_ENTITY || cell->type == COLUMN_POINTS) return false;
         is_good &= read_scalar(reader, element, label, cell, &out->bits[i]);
     }
     return is_good;
