@@ -78,8 +78,7 @@ bool store_image(tinygltf::Image *image, const int, std::string *, std::string *
 
 // ---- extensions ----
 
-const tinygltf::Value *find_extension(const tinygltf::ExtensionMap &extensions,
-                                      const char *name) {
+const tinygltf::Value *find_extension(const tinygltf::ExtensionMap &extensions, const char *name) {
     auto it = extensions.find(name);
     return it != extensions.end() && it->second.IsObject() ? &it->second : nullptr;
 }
@@ -139,12 +138,9 @@ void read_accessors(Reader &r) {
         out.count = a.count;
         out.component_type = u32(a.componentType);
         // The library's type numbers: 1 scalar is 65, vectors 2 to 4, matrices 34 to 36.
-        out.columns = a.type >= TINYGLTF_TYPE_MAT2 && a.type <= TINYGLTF_TYPE_MAT4
-                          ? u32(a.type - 32)
-                          : 1;
-        out.rows = a.type == TINYGLTF_TYPE_SCALAR ? 1
-                   : out.columns > 1              ? out.columns
-                                                  : u32(a.type);
+        out.columns =
+            a.type >= TINYGLTF_TYPE_MAT2 && a.type <= TINYGLTF_TYPE_MAT4 ? u32(a.type - 32) : 1;
+        out.rows = a.type == TINYGLTF_TYPE_SCALAR ? 1 : out.columns > 1 ? out.columns : u32(a.type);
         out.normalized = a.normalized;
         out.sparse = a.sparse.isSparse;
         if (!out.sparse) continue; // the fields below are not initialised then
@@ -197,8 +193,10 @@ void read_material(Reader &r, const tinygltf::Material &m, GltfMaterial &out) {
     out.roughness = f32(pbr.roughnessFactor);
     out.normal_scale = f32(m.normalTexture.scale);
     out.cutoff = f32(m.alphaCutoff);
-    out.alpha_mode = m.alphaMode == "OPAQUE" ? 0 : m.alphaMode == "MASK" ? 1
-                     : m.alphaMode == "BLEND" ? 2 : 3;
+    out.alpha_mode = m.alphaMode == "OPAQUE"  ? 0
+                     : m.alphaMode == "MASK"  ? 1
+                     : m.alphaMode == "BLEND" ? 2
+                                              : 3;
     out.double_sided = m.doubleSided;
     out.base_texture = texture_ref(pbr.baseColorTexture);
     out.metallic_roughness_texture = texture_ref(pbr.metallicRoughnessTexture);
@@ -206,14 +204,14 @@ void read_material(Reader &r, const tinygltf::Material &m, GltfMaterial &out) {
     out.emissive_texture = texture_ref(m.emissiveTexture);
 
     out.unlit = m.extensions.count("KHR_materials_unlit") > 0;
-    out.emissive_strength = number(
-        find_extension(m.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+    out.emissive_strength = number(find_extension(m.extensions, "KHR_materials_emissive_strength"),
+                                   "emissiveStrength", 1);
     const tinygltf::Value *specular = find_extension(m.extensions, "KHR_materials_specular");
     out.specular_factor = number(specular, "specularFactor", 1);
     out.specular_color[0] = out.specular_color[1] = out.specular_color[2] = 1;
     numbers(specular, "specularColorFactor", 3, out.specular_color);
-    out.has_specular_textures = specular && (specular->Has("specularTexture") ||
-                                             specular->Has("specularColorTexture"));
+    out.has_specular_textures =
+        specular && (specular->Has("specularTexture") || specular->Has("specularColorTexture"));
 }
 
 i32 attribute(const tinygltf::Primitive &p, const char *name) {
@@ -276,8 +274,7 @@ void read_node(Reader &r, const tinygltf::Node &n, GltfNode &out) {
             double length = glm::length(q);
             if (length > 0) local *= glm::mat4_cast(q / length);
         }
-        if (!n.scale.empty())
-            local = glm::scale(local, glm::dvec3(glm::make_vec3(n.scale.data())));
+        if (!n.scale.empty()) local = glm::scale(local, glm::dvec3(glm::make_vec3(n.scale.data())));
     }
     for (int c = 0; c < 4; c++)
         for (int row = 0; row < 4; row++) out.local[c * 4 + row] = f32(local[c][row]);
@@ -359,9 +356,10 @@ void read_all(Reader &r) {
     raw.sampler_count = u32(m.samplers.size());
 }
 
-// The first line of the parser's words.
+std::string first_line(const std::string &text) { return text.substr(0, text.find('\n')); }
+
 void explain(Arena *arena, const std::string &error, char *why) {
-    std::string line = error.substr(0, error.find('\n'));
+    std::string line = first_line(error);
     if (line.empty()) line = "the parser refuses it without a word";
     u64 mark = arena_mark(arena);
     std::snprintf(why, ASSET_MESSAGE_CAP, "%s",
@@ -384,18 +382,22 @@ bool parse(Bytes file, Bytes json, bool binary, GltfFiles *files, GltfRaw *raw, 
     tinygltf::Model *model = new tinygltf::Model;
     raw->owner = model;
     std::string error, warning; // a warning is an image that is not there: said when it is missed
-    bool ok = binary ? loader.LoadBinaryFromMemory(
-                           model, &error, &warning, static_cast<const unsigned char *>(file.data),
-                           unsigned(file.size), "")
+    bool ok = binary ? loader.LoadBinaryFromMemory(model, &error, &warning,
+                                                   static_cast<const unsigned char *>(file.data),
+                                                   unsigned(file.size), "")
                      : loader.LoadASCIIFromString(model, &error, &warning,
                                                   static_cast<const char *>(json.data),
                                                   unsigned(json.size), "");
     // The parser drops some objects that it cannot read and goes on with only a line in `error`.
-    if (!ok || !error.empty()) {
+    // That may be a primitive; but about skins and animations, which are not used, it also
+    // complains without reason (inverseBindMatrices are optional), so there it is a remark.
+    bool unused_parts = !model->skins.empty() || !model->animations.empty();
+    if (!ok || (!error.empty() && !unused_parts)) {
         explain(files->scratch, error, why);
         return false;
     }
     Reader reader = {files->scratch, model, raw};
+    raw->remark = reader.text(first_line(error));
     read_all(reader);
     return true;
 }
@@ -405,19 +407,17 @@ bool parse(Bytes file, Bytes json, bool binary, GltfFiles *files, GltfRaw *raw, 
 extern "C" bool gltf_parse(Bytes file, Bytes json, bool binary, GltfFiles *files, GltfRaw *raw,
                            char *why) {
     std::memset(raw, 0, sizeof *raw);
-    const char *problem = nullptr;
     try {
         if (parse(file, json, binary, files, raw, why)) return true;
     } catch (const NoMemory &) {
-        problem = "no memory for its tables";
+        std::snprintf(why, ASSET_MESSAGE_CAP, "no memory for its tables");
     } catch (const std::bad_alloc &) {
-        problem = "no memory to parse it";
+        std::snprintf(why, ASSET_MESSAGE_CAP, "no memory to parse it");
     } catch (const std::exception &e) {
-        problem = e.what();
+        std::snprintf(why, ASSET_MESSAGE_CAP, "%.200s", e.what());
     } catch (...) {
-        problem = "the parser failed";
+        std::snprintf(why, ASSET_MESSAGE_CAP, "the parser failed");
     }
-    if (problem) std::snprintf(why, ASSET_MESSAGE_CAP, "%.200s", problem);
     gltf_free(raw);
     return false;
 }

@@ -36,12 +36,16 @@ static bool finite_array(const f32 *values, u32 count) {
 u32 gltf_component_size(u32 component_type) {
     switch (component_type) {
     case BYTE:
-    case UNSIGNED_BYTE: return 1;
+    case UNSIGNED_BYTE:
+        return 1;
     case SHORT:
-    case UNSIGNED_SHORT: return 2;
+    case UNSIGNED_SHORT:
+        return 2;
     case UNSIGNED_INT:
-    case FLOAT: return 4;
-    default: return 0;
+    case FLOAT:
+        return 4;
+    default:
+        return 0;
     }
 }
 
@@ -117,8 +121,8 @@ static bool check_sparse(const GltfRaw *raw, u32 i, char *why) {
         !fits_view(&raw->views[a->sparse_value_view], (u64)a->sparse_value_offset, count,
                    gltf_element_size(a), gltf_element_size(a)))
         return refuse(why, "accessor %u: its sparse part lies beyond a bufferView", i);
-    const u8 *at = (const u8 *)raw->buffers[view->buffer].data + view->offset +
-                   a->sparse_index_offset;
+    const u8 *at =
+        (const u8 *)raw->buffers[view->buffer].data + view->offset + a->sparse_index_offset;
     for (u64 k = 0; k < count; k++) {
         u32 index = sparse_index(at + k * size, type);
         if (index >= a->count || (k && index <= sparse_index(at + (k - 1) * size, type)))
@@ -142,9 +146,10 @@ static bool check_accessors(const GltfRaw *raw, char *why) {
             const GltfView *view = &raw->views[a->view];
             u64 stride = view->stride ? view->stride : size;
             if (stride < size || stride > 252)
-                return refuse(why, "accessor %u: byteStride %llu of bufferView %d is under the "
-                              "element's %u bytes or over 252", i, (unsigned long long)stride,
-                              a->view, size);
+                return refuse(why,
+                              "accessor %u: byteStride %llu of bufferView %d is under the "
+                              "element's %u bytes or over 252",
+                              i, (unsigned long long)stride, a->view, size);
             if (!fits_view(view, a->offset, a->count, stride, size))
                 return refuse(why, "accessor %u: %llu elements lie beyond bufferView %d", i,
                               (unsigned long long)a->count, a->view);
@@ -335,15 +340,14 @@ static bool check_lights_and_cameras(const GltfRaw *raw, char *why) {
             l->intensity < 0 || l->range < 0)
             return refuse(why, "light %u: colour, intensity or range are not numbers over 0", i);
         if (l->kind > 2) return refuse(why, "light %u: unknown type", i);
-        if (l->kind == 1 && !(l->inner_rad >= 0 && l->inner_rad < l->outer_rad &&
-                              l->outer_rad <= PI_F / 2 + 1e-4f))
-            return refuse(why, "light %u: cone angles are not 0 <= inner < outer <= 90 degrees",
-                          i);
+        if (l->kind == 1 &&
+            !(l->inner_rad >= 0 && l->inner_rad < l->outer_rad && l->outer_rad <= PI_F / 2 + 1e-4f))
+            return refuse(why, "light %u: cone angles are not 0 <= inner < outer <= 90 degrees", i);
     }
     for (u32 i = 0; i < raw->camera_count; i++) {
         const GltfCamera *c = &raw->cameras[i];
-        if (c->perspective && !(c->fov_y_rad > 0 && c->fov_y_rad < PI_F && c->near > 0 &&
-                                isfinite(c->near)))
+        if (c->perspective &&
+            !(c->fov_y_rad > 0 && c->fov_y_rad < PI_F && c->near > 0 && isfinite(c->near)))
             return refuse(why, "camera %u: yfov or znear is out of range", i);
     }
     return true;
@@ -351,6 +355,6 @@ static bool check_lights_and_cameras(const GltfRaw *raw, char *why) {
 
 bool gltf_check(GltfRaw *raw, const GltfFiles *files, char *why) {
     return check_asset(raw, why) && check_views(raw, why) && check_accessors(raw, why) &&
-           check_images(raw, files, why) && check_materials(raw, why) &&
-           check_meshes(raw, why) && check_nodes(raw, why) && check_lights_and_cameras(raw, why);
+           check_images(raw, files, why) && check_materials(raw, why) && check_meshes(raw, why) &&
+           check_nodes(raw, why) && check_lights_and_cameras(raw, why);
 }

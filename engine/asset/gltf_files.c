@@ -50,8 +50,7 @@ static GltfUri check_name(const GltfFiles *files, const char *name, u64 size, ch
     }
     for (u64 i = 0; i < size; i++)
         if ((u8)name[i] < 32 || name[i] == '\\') {
-            snprintf(why, ASSET_MESSAGE_CAP, "a file name holds the character 0x%02x",
-                     (u8)name[i]);
+            snprintf(why, ASSET_MESSAGE_CAP, "a file name holds the character 0x%02x", (u8)name[i]);
             return GLTF_URI_BAD;
         }
     if (size == 0) {
@@ -125,9 +124,10 @@ bool gltf_files_read(GltfFiles *files, const char *name, u64 name_size, Bytes *o
         return false;
     }
     if (!file_root_read(files->root, path, files->bytes_left, files->scratch, out)) {
-        snprintf(why, ASSET_MESSAGE_CAP, "the file '%.100s' cannot be read, or all files "
-                 "together are over %llu MiB", path,
-                 (unsigned long long)(ASSET_FILE_SIZE_MAX >> 20));
+        snprintf(why, ASSET_MESSAGE_CAP,
+                 "the file '%.100s' cannot be read, or all files "
+                 "together are over %llu MiB",
+                 path, (unsigned long long)(ASSET_FILE_SIZE_MAX >> 20));
         return false;
     }
     files->bytes_left -= out->size;

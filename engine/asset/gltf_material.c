@@ -15,10 +15,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DIELECTRIC     0.04f
-#define ROUGHNESS_MIN  0.05f
-#define POWER_MAX      2048.0f
-#define MEAN_SIDE      64 // px; the size at which metal and roughness are averaged
+#define DIELECTRIC    0.04f
+#define ROUGHNESS_MIN 0.05f
+#define POWER_MAX     2048.0f
+#define MEAN_SIDE     64 // px; the size at which metal and roughness are averaged
 
 typedef enum Use { USE_SRGB, USE_LINEAR, USE_MEAN, USE_COUNT } Use;
 
@@ -37,8 +37,8 @@ typedef struct Builder {
     GltfFiles *files;
     const GltfRaw *raw;
     const char *path;
-    u32 *texture_of[2];  // [USE_SRGB, USE_LINEAR][image]: texture id, 0 none
-    f32 (*mean_of)[4];   // [image]: mean of USE_MEAN, 0..1 each; negative: none
+    u32 *texture_of[2];    // [USE_SRGB, USE_LINEAR][image]: texture id, 0 none
+    f32 (*mean_of)[4];     // [image]: mean of USE_MEAN, 0..1 each; negative: none
     bool *used[USE_COUNT]; // [image]
     Decode *decodes;
     u32 decode_count;
@@ -103,8 +103,8 @@ static bool plan_image(Builder *b, u32 image, char *why) {
         if (use == USE_MEAN) {
             d->pixels = scratch_try_push(&b->store->scratch, (u64)d->width * d->height, 4);
         } else {
-            d->texture = store_reserve_texture(b->store, d->width, d->height, d->kind, true,
-                                               &d->pixels);
+            d->texture =
+                store_reserve_texture(b->store, d->width, d->height, d->kind, true, &d->pixels);
             b->texture_of[use][image] = d->texture;
         }
         if (!d->pixels) {
@@ -201,16 +201,15 @@ static void mean_color(const Texture *t, f32 out[3]) {
 static void convert_material(const Builder *b, const GltfMaterial *m, u32 index,
                              ModelMaterial *out) {
     Arena *arena = &b->store->arena;
-    *out = (ModelMaterial){
-        .name = m->name[0] ? arena_copy_string(arena, m->name)
-                           : arena_format(arena, "material %u", index),
-        .emissive_strength = MAX(m->emissive_strength, 0.0f),
-        .alpha_mode = m->alpha_mode,
-        .alpha_cutoff = f32_saturate(m->cutoff),
-        .double_sided = m->double_sided,
-        .albedo_texture = texture_id(b, &m->base_texture, USE_SRGB),
-        .normal_texture = texture_id(b, &m->normal_texture, USE_LINEAR),
-        .emissive_texture = texture_id(b, &m->emissive_texture, USE_SRGB)};
+    *out = (ModelMaterial){.name = m->name[0] ? arena_copy_string(arena, m->name)
+                                              : arena_format(arena, "material %u", index),
+                           .emissive_strength = MAX(m->emissive_strength, 0.0f),
+                           .alpha_mode = m->alpha_mode,
+                           .alpha_cutoff = f32_saturate(m->cutoff),
+                           .double_sided = m->double_sided,
+                           .albedo_texture = texture_id(b, &m->base_texture, USE_SRGB),
+                           .normal_texture = texture_id(b, &m->normal_texture, USE_LINEAR),
+                           .emissive_texture = texture_id(b, &m->emissive_texture, USE_SRGB)};
 
     f32 metallic = f32_saturate(m->metallic), roughness = f32_saturate(m->roughness);
     i32 image = image_of(b->raw, &m->metallic_roughness_texture);
@@ -262,8 +261,10 @@ static void remark(const Builder *b) {
         LOG(ASSET_MODEL_WARNING, "%s: the normal scale of %u materials is ignored", b->path,
             scaled);
     if (mapped)
-        LOG(ASSET_MODEL_WARNING, "%s: %u materials map their textures in different ways; all "
-            "follow the base colour", b->path, mapped);
+        LOG(ASSET_MODEL_WARNING,
+            "%s: %u materials map their textures in different ways; all "
+            "follow the base colour",
+            b->path, mapped);
 }
 
 // Not glTF's own default (a rough white metal, black without surroundings to reflect).
@@ -276,8 +277,8 @@ static ModelMaterial default_material(void) {
                            .alpha_cutoff = 0.5f};
 }
 
-bool gltf_build_materials(AssetStore *store, GltfFiles *files, const GltfRaw *raw,
-                          const char *path, Model *model, char *why) {
+bool gltf_build_materials(AssetStore *store, GltfFiles *files, const GltfRaw *raw, const char *path,
+                          Model *model, char *why) {
     Builder b = {.store = store, .files = files, .raw = raw, .path = path};
     b.pixels_left = GLTF_PIXELS_MAX;
     if (!load_images(&b, why)) return false;

@@ -82,7 +82,8 @@ static bool read_vertices(const GltfRaw *raw, Arena *scratch, const GltfPrimitiv
 }
 
 // Corner list of a strip or fan: every other triangle of a strip is turned round.
-static u32 *list_triangles(Arena *scratch, const u32 *corners, u32 count, i32 mode, u32 *out_count) {
+static u32 *list_triangles(Arena *scratch, const u32 *corners, u32 count, i32 mode,
+                           u32 *out_count) {
     u32 triangles = count >= 3 ? count - 2 : 0;
     u32 *list = scratch_try_push(scratch, 3 * (u64)triangles, sizeof *list);
     for (u32 t = 0; list && t < triangles; t++) {
@@ -159,7 +160,6 @@ bool gltf_build_meshes(AssetStore *store, const GltfRaw *raw, const char *path, 
     if (morphed)
         LOG(ASSET_MODEL_WARNING, "%s: morph targets are ignored (%u primitives)", path, morphed);
     if (far_uvs)
-        LOG(ASSET_MODEL_WARNING, "%s: TEXCOORD_2 and above are not read, TEXCOORD_0 is used",
-            path);
+        LOG(ASSET_MODEL_WARNING, "%s: TEXCOORD_2 and above are not read, TEXCOORD_0 is used", path);
     return true;
 }

@@ -147,15 +147,15 @@ static void build_lights_and_cameras(AssetStore *store, const GltfRaw *raw, cons
         const GltfNode *n = &raw->nodes[p->placed[i].node];
         if (n->light >= 0) {
             const GltfLight *l = &raw->lights[n->light];
-            lights[model->light_count] = (ModelLight){
-                .name = name_or(arena, l->name, n->name, "light", model->light_count),
-                .kind = l->kind,
-                .color = {l->color[0], l->color[1], l->color[2]},
-                .intensity = l->intensity,
-                .range = l->range,
-                .inner_rad = l->inner_rad,
-                .outer_rad = MIN(l->outer_rad, PI_F / 2),
-                .local = p->placed[i].world};
+            lights[model->light_count] =
+                (ModelLight){.name = name_or(arena, l->name, n->name, "light", model->light_count),
+                             .kind = l->kind,
+                             .color = {l->color[0], l->color[1], l->color[2]},
+                             .intensity = l->intensity,
+                             .range = l->range,
+                             .inner_rad = l->inner_rad,
+                             .outer_rad = MIN(l->outer_rad, PI_F / 2),
+                             .local = p->placed[i].world};
             model->light_count++;
         }
         if (n->camera >= 0 && raw->cameras[n->camera].perspective) {
@@ -171,6 +171,7 @@ static void build_lights_and_cameras(AssetStore *store, const GltfRaw *raw, cons
 }
 
 static void remark(const GltfRaw *raw, const Placement *p, const char *path) {
+    if (raw->remark[0]) LOG(ASSET_MODEL_WARNING, "%s: %s", path, raw->remark);
     if (raw->skin_count) LOG(ASSET_MODEL_WARNING, "%s: skins are ignored", path);
     if (raw->animation_count) LOG(ASSET_MODEL_WARNING, "%s: animations are ignored", path);
     if (p->orthographic_count)
@@ -198,7 +199,8 @@ static u32 build_model(AssetStore *store, GltfFiles *files, const GltfRaw *raw, 
     if (!arena_can_push(&store->arena,
                         p.part_count * sizeof(ModelPart) +
                             (u64)p.light_count * (sizeof(ModelLight) + 256) +
-                            (u64)p.camera_count * (sizeof(ModelCamera) + 256) + KIB(64), 64)) {
+                            (u64)p.camera_count * (sizeof(ModelCamera) + 256) + KIB(64),
+                        64)) {
         snprintf(why, ASSET_MESSAGE_CAP, "the store is full");
         return 0;
     }
@@ -232,8 +234,7 @@ static u32 load(AssetStore *store, const FileRoot *root, const char *path, char 
     }
     files.bytes_left -= file.size;
     files.hash = hash_bytes(file.data, file.size, 0);
-    if (!gltf_scan(file, &json, &binary, why) ||
-        !gltf_parse(file, json, binary, &files, &raw, why))
+    if (!gltf_scan(file, &json, &binary, why) || !gltf_parse(file, json, binary, &files, &raw, why))
         return 0;
     u32 id = gltf_check(&raw, &files, why) ? build_model(store, &files, &raw, path, why) : 0;
     gltf_free(&raw);

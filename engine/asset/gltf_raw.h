@@ -19,7 +19,7 @@ extern "C" {
 #define GLTF_JSON_VALUES_MAX  (1u << 23)
 #define GLTF_JSON_OBJECTS_MAX (1u << 20)
 #define GLTF_PATH_CAP         1024
-#define GLTF_COORDINATE_MAX   1e9f // m; keeps sums and squares of coordinates finite
+#define GLTF_COORDINATE_MAX   1e9f         // m; keeps sums and squares of coordinates finite
 #define GLTF_PIXELS_MAX       (1ull << 30) // of all images of a file, before scaling down
 
 typedef struct GltfView {
@@ -99,7 +99,8 @@ typedef struct GltfLight {
 } GltfLight;
 
 typedef struct GltfRaw {
-    void *owner; // tinygltf's model
+    void *owner;        // tinygltf's model
+    const char *remark; // what the parser left out of skins and animations, "" = nothing
     const char *version, *min_version;
     const char **required; // extensionsRequired
     Bytes *buffers, *buffer_uris;
@@ -170,8 +171,8 @@ Bytes gltf_view_bytes(const GltfRaw *raw, i32 view);
 
 // Decodes images, adds textures and fills model->materials (one more than the file's: the default
 // material of parts without one, last). False with `why`.
-bool gltf_build_materials(AssetStore *store, GltfFiles *files, const GltfRaw *raw,
-                          const char *path, Model *model, char *why);
+bool gltf_build_materials(AssetStore *store, GltfFiles *files, const GltfRaw *raw, const char *path,
+                          Model *model, char *why);
 
 // ---- gltf_mesh.c ----
 

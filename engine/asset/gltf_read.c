@@ -19,9 +19,14 @@ static u32 load_integer(const u8 *at, u32 type) {
     u16 half;
     u32 word;
     switch (type) {
-    case UNSIGNED_BYTE: return at[0];
-    case UNSIGNED_SHORT: memcpy(&half, at, 2); return half;
-    default: memcpy(&word, at, 4); return word;
+    case UNSIGNED_BYTE:
+        return at[0];
+    case UNSIGNED_SHORT:
+        memcpy(&half, at, 2);
+        return half;
+    default:
+        memcpy(&word, at, 4);
+        return word;
     }
 }
 
@@ -30,16 +35,22 @@ static f32 load_float(const u8 *at, u32 type, bool normalized) {
     f32 value;
     int16_t half;
     switch (type) {
-    case BYTE: value = (f32)(int8_t)at[0]; return normalized ? fmaxf(value / 127, -1) : value;
-    case UNSIGNED_BYTE: return normalized ? (f32)at[0] / 255 : (f32)at[0];
+    case BYTE:
+        value = (f32)(int8_t)at[0];
+        return normalized ? fmaxf(value / 127, -1) : value;
+    case UNSIGNED_BYTE:
+        return normalized ? (f32)at[0] / 255 : (f32)at[0];
     case SHORT:
         memcpy(&half, at, 2);
         return normalized ? fmaxf((f32)half / 32767, -1) : (f32)half;
     case UNSIGNED_SHORT:
         value = (f32)load_integer(at, type);
         return normalized ? value / 65535 : value;
-    case UNSIGNED_INT: return (f32)load_integer(at, type);
-    default: memcpy(&value, at, 4); return value;
+    case UNSIGNED_INT:
+        return (f32)load_integer(at, type);
+    default:
+        memcpy(&value, at, 4);
+        return value;
     }
 }
 
@@ -49,8 +60,10 @@ static bool read_element(const GltfAccessor *a, i32 accessor, u64 element, const
     for (u32 k = 0; k < MIN(width, a->rows); k++) {
         f32 value = load_float(at + k * size, a->component_type, a->normalized);
         if (!(fabsf(value) <= GLTF_COORDINATE_MAX)) {
-            snprintf(why, ASSET_MESSAGE_CAP, "accessor %d: element %llu is not a finite number "
-                     "under 1e9", accessor, (unsigned long long)element);
+            snprintf(why, ASSET_MESSAGE_CAP,
+                     "accessor %d: element %llu is not a finite number "
+                     "under 1e9",
+                     accessor, (unsigned long long)element);
             return false;
         }
         out[k] = value;
@@ -68,18 +81,18 @@ bool gltf_read_floats(const GltfRaw *raw, i32 accessor, u32 width, void *out, u6
         const u8 *at = (const u8 *)gltf_view_bytes(raw, a->view).data + a->offset;
         u64 step = view->stride ? view->stride : size;
         for (u64 i = 0; i < a->count; i++)
-            if (!read_element(a, accessor, i, at + i * step, width, (f32 *)(void *)(row + i * stride),
-                              why))
+            if (!read_element(a, accessor, i, at + i * step, width,
+                              (f32 *)(void *)(row + i * stride), why))
                 return false;
     } else {
         for (u64 i = 0; i < a->count; i++)
             memset(row + i * stride, 0, MIN(width, a->rows) * sizeof(f32));
     }
     if (!a->sparse) return true;
-    const u8 *indices = (const u8 *)gltf_view_bytes(raw, a->sparse_index_view).data +
-                        a->sparse_index_offset;
-    const u8 *values = (const u8 *)gltf_view_bytes(raw, a->sparse_value_view).data +
-                       a->sparse_value_offset;
+    const u8 *indices =
+        (const u8 *)gltf_view_bytes(raw, a->sparse_index_view).data + a->sparse_index_offset;
+    const u8 *values =
+        (const u8 *)gltf_view_bytes(raw, a->sparse_value_view).data + a->sparse_value_offset;
     u32 index_size = gltf_component_size(a->sparse_index_type);
     for (u64 i = 0; i < (u64)a->sparse_count; i++) {
         u32 element = load_integer(indices + i * index_size, a->sparse_index_type);
@@ -109,10 +122,10 @@ bool gltf_read_indices(const GltfRaw *raw, i32 accessor, u32 vertex_count, u32 *
         memset(out, 0, a->count * sizeof *out);
     }
     if (a->sparse) {
-        const u8 *indices = (const u8 *)gltf_view_bytes(raw, a->sparse_index_view).data +
-                            a->sparse_index_offset;
-        const u8 *values = (const u8 *)gltf_view_bytes(raw, a->sparse_value_view).data +
-                           a->sparse_value_offset;
+        const u8 *indices =
+            (const u8 *)gltf_view_bytes(raw, a->sparse_index_view).data + a->sparse_index_offset;
+        const u8 *values =
+            (const u8 *)gltf_view_bytes(raw, a->sparse_value_view).data + a->sparse_value_offset;
         u32 index_size = gltf_component_size(a->sparse_index_type);
         for (u64 i = 0; i < (u64)a->sparse_count; i++)
             out[load_integer(indices + i * index_size, a->sparse_index_type)] =

@@ -19,20 +19,28 @@
 static const struct {
     const char *key;
     u32 max;
-} array_limits[] = {
-    {"accessors", 1u << 20}, {"bufferViews", 1u << 20},   {"nodes", 1u << 18},
-    {"meshes", 1u << 16},    {"materials", ASSET_MATERIALS_MAX - 1}, // one is our default
-    {"images", 4096},        {"textures", 4096},          {"samplers", 4096},
-    {"cameras", 4096},       {"buffers", 4096},           {"scenes", 4096},
-    {"skins", 1u << 14},     {"animations", 1u << 14},    {"extensionsUsed", 1024},
-    {"extensionsRequired", 1024}};
+} array_limits[] = {{"accessors", 1u << 20},
+                    {"bufferViews", 1u << 20},
+                    {"nodes", 1u << 18},
+                    {"meshes", 1u << 16},
+                    {"materials", ASSET_MATERIALS_MAX - 1}, // one is our default
+                    {"images", 4096},
+                    {"textures", 4096},
+                    {"samplers", 4096},
+                    {"cameras", 4096},
+                    {"buffers", 4096},
+                    {"scenes", 4096},
+                    {"skins", 1u << 14},
+                    {"animations", 1u << 14},
+                    {"extensionsUsed", 1024},
+                    {"extensionsRequired", 1024}};
 
 // Keys whose values must be whole numbers from 0 to 2^32 - 1 (or, for some, something else than a
 // number): the parser quietly ignores others.
 static const char *const whole_number_keys[] = {
-    "byteOffset", "byteLength", "byteStride", "count",   "bufferView", "buffer", "componentType",
-    "mesh",       "camera",     "skin",       "indices", "material",   "source", "index",
-    "scene",      "texCoord",   "mode"};
+    "byteOffset",    "byteLength", "byteStride", "count",    "bufferView", "buffer",
+    "componentType", "mesh",       "camera",     "skin",     "indices",    "material",
+    "source",        "index",      "scene",      "texCoord", "mode"};
 
 typedef struct Scan {
     const u8 *text;

@@ -27,12 +27,12 @@ static void *decode_realloc(void *old, size_t old_size, size_t size) {
 // Both headers declare functions that these switches leave out; GCC tells at the end of the file.
 #pragma GCC diagnostic ignored "-Wunused-function"
 
-#define STBI_MALLOC(size)                         decode_malloc(size)
-#define STBI_REALLOC_SIZED(old, old_size, size)   decode_realloc(old, old_size, size)
-#define STBI_REALLOC(old, size)                   decode_realloc(old, 0, size)
-#define STBI_FREE(block)                          free(block)
-#define STBI_ASSERT(x)                            ((void)0) // a file must not stop the program
-#define STBI_MAX_DIMENSIONS                       ASSET_IMAGE_SIDE_MAX
+#define STBI_MALLOC(size)                       decode_malloc(size)
+#define STBI_REALLOC_SIZED(old, old_size, size) decode_realloc(old, old_size, size)
+#define STBI_REALLOC(old, size)                 decode_realloc(old, 0, size)
+#define STBI_FREE(block)                        free(block)
+#define STBI_ASSERT(x)                          ((void)0) // a file must not stop the program
+#define STBI_MAX_DIMENSIONS                     ASSET_IMAGE_SIDE_MAX
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
@@ -71,8 +71,7 @@ bool image_probe(Bytes file, u32 *width, u32 *height, char *why) {
     }
     if (*(const u8 *)file.data == 0xFF && !image_check_jpeg(file, why)) return false;
     decode_block_max = DECODE_BLOCK_SMALL;
-    if (!stbi_info_from_memory(file.data, (int)file.size, &w, &h, &channels) || w <= 0 ||
-        h <= 0) {
+    if (!stbi_info_from_memory(file.data, (int)file.size, &w, &h, &channels) || w <= 0 || h <= 0) {
         const char *reason = stbi_failure_reason();
         snprintf(why, ASSET_MESSAGE_CAP, "not a PNG, JPEG, TGA or BMP image that can be read (%s)",
                  reason ? reason : "no size");
@@ -162,8 +161,8 @@ bool image_read(const char *path, Arena *arena, u8 **rgba, u32 *width, u32 *heig
 }
 
 bool image_write_png(const char *path, const u8 *pixels, u32 width, u32 height, u32 channels) {
-    if ((channels != 3 && channels != 4) || !width || !height || width > 65535 ||
-        height > 65535 || (u64)width * height * channels > MIB(1024)) {
+    if ((channels != 3 && channels != 4) || !width || !height || width > 65535 || height > 65535 ||
+        (u64)width * height * channels > MIB(1024)) {
         LOG(FILE_WRITE, "'%s': cannot write %u x %u pixels of %u channels as PNG", path, width,
             height, channels);
         return false;

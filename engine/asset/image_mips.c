@@ -18,7 +18,7 @@
 #define CUTOUT_LOW   32  // alpha below is "hole", at 255 - LOW and above "solid"
 #define CUTOUT_CUT   128 // the cutoff whose coverage is kept
 
-static f32 decode_table[256];      // sRGB code to linear 0..1
+static f32 decode_table[256];         // sRGB code to linear 0..1
 static u8 encode_table[ENCODE_STEPS]; // linear in 16 bits to the nearest sRGB code
 static pthread_once_t tables_once = PTHREAD_ONCE_INIT;
 

@@ -61,8 +61,7 @@ Vec3 asset_unpack_normal(u32 packed) {
 
 static Vec3 unpack_tangent(u32 packed) {
     i32 y = (i32)(packed << 1) >> 17; // 15 bits, sign-extended
-    return octahedral_decode(
-        (Vec2){(f32)(int16_t)(packed & 0xFFFF) / 32767.0f, (f32)y / 16383.0f});
+    return octahedral_decode((Vec2){(f32)(int16_t)(packed & 0xFFFF) / 32767.0f, (f32)y / 16383.0f});
 }
 
 Vec3 mesh_any_tangent(Vec3 n) {
@@ -98,9 +97,8 @@ static SourceVertex *make_flat(Arena *scratch, const SourceVertex *vertices, con
     SourceVertex *flat = scratch_try_push(scratch, index_count, sizeof *flat);
     for (u32 i = 0; flat && i + 2 < index_count; i += 3) {
         for (u32 k = 0; k < 3; k++) flat[i + k] = vertices[indices[i + k]];
-        Vec3 normal = vec3_normalize(
-            vec3_cross(vec3_sub(flat[i + 1].position, flat[i].position),
-                       vec3_sub(flat[i + 2].position, flat[i].position)));
+        Vec3 normal = vec3_normalize(vec3_cross(vec3_sub(flat[i + 1].position, flat[i].position),
+                                                vec3_sub(flat[i + 2].position, flat[i].position)));
         for (u32 k = 0; k < 3; k++) flat[i + k].normal = normal;
     }
     return flat;
@@ -134,13 +132,12 @@ static void clean_vertices(MeshSource *source) {
 static void pack_vertices(const SourceVertex *in, u32 count, MeshVertex *out) {
     for (u32 i = 0; i < count; i++) {
         const SourceVertex *v = &in[i];
-        out[i] = (MeshVertex){
-            .position = {v->position.x, v->position.y, v->position.z},
-            .normal = asset_pack_normal(v->normal),
-            .uv = {v->uv.x, v->uv.y},
-            .tangent = asset_pack_tangent(vec3(v->tangent.x, v->tangent.y, v->tangent.z),
-                                          v->tangent.w),
-            .color = v->color};
+        out[i] = (MeshVertex){.position = {v->position.x, v->position.y, v->position.z},
+                              .normal = asset_pack_normal(v->normal),
+                              .uv = {v->uv.x, v->uv.y},
+                              .tangent = asset_pack_tangent(
+                                  vec3(v->tangent.x, v->tangent.y, v->tangent.z), v->tangent.w),
+                              .color = v->color};
     }
 }
 
@@ -159,8 +156,8 @@ static u32 finish(AssetStore *store, const SourceVertex *vertices, u32 vertex_co
     meshopt_optimizeVertexCache(order, indices, index_count, vertex_count);
     meshopt_optimizeOverdraw(indices, order, index_count, packed[0].position, vertex_count,
                              sizeof *packed, OVERDRAW_THRESHOLD);
-    u32 used = (u32)meshopt_optimizeVertexFetch(ordered, indices, index_count, packed,
-                                                vertex_count, sizeof *packed);
+    u32 used = (u32)meshopt_optimizeVertexFetch(ordered, indices, index_count, packed, vertex_count,
+                                                sizeof *packed);
     u32 mesh = asset_add_mesh(store, ordered, used, indices, index_count);
     if (!mesh) snprintf(why, ASSET_MESSAGE_CAP, "a limit of the store is reached");
     return mesh;
@@ -178,8 +175,8 @@ static u32 process(AssetStore *store, MeshSource *source, char *why) {
 
     if (!source->has_normals) {
         if (index_count > ASSET_VERTICES_MAX) {
-            snprintf(why, ASSET_MESSAGE_CAP, "flat normals need %u vertices, over %u",
-                     index_count, ASSET_VERTICES_MAX);
+            snprintf(why, ASSET_MESSAGE_CAP, "flat normals need %u vertices, over %u", index_count,
+                     ASSET_VERTICES_MAX);
             return 0;
         }
         source->vertices = make_flat(scratch, source->vertices, indices, index_count);
@@ -192,9 +189,9 @@ static u32 process(AssetStore *store, MeshSource *source, char *why) {
 
     u32 *remap = scratch_try_push(scratch, source->vertex_count, sizeof *remap);
     if (!remap) goto no_memory;
-    u32 welded_count = (u32)meshopt_generateVertexRemap(
-        remap, indices, index_count, source->vertices, source->vertex_count,
-        sizeof *source->vertices);
+    u32 welded_count =
+        (u32)meshopt_generateVertexRemap(remap, indices, index_count, source->vertices,
+                                         source->vertex_count, sizeof *source->vertices);
     // Twice the room: making tangents may split every vertex.
     SourceVertex *welded = scratch_try_push(scratch, 2 * (u64)welded_count, sizeof *welded);
     if (!welded) goto no_memory;
@@ -244,8 +241,8 @@ u32 mesh_add_mirrored(AssetStore *store, u32 mesh) {
             v.position[0] = -v.position[0];
             v.normal = asset_pack_normal(vec3(-n.x, n.y, n.z));
             // cross(normal, tangent) turns round in a mirror, the bitangent does not.
-            v.tangent = asset_pack_tangent(vec3(-t.x, t.y, t.z),
-                                           v.tangent & 0x80000000u ? 1.0f : -1.0f);
+            v.tangent =
+                asset_pack_tangent(vec3(-t.x, t.y, t.z), v.tangent & 0x80000000u ? 1.0f : -1.0f);
             vertices[i] = v;
         }
         for (u32 i = 0; i + 2 < in->index_count; i += 3) {

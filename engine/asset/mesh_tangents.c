@@ -36,8 +36,7 @@ static bool u_direction(const SourceVertex *const corner[3], Vec3 *direction, u3
     *hand = area > 0.0f;
     if (area == 0.0f || !isfinite(area)) return false;
     f32 flip = area > 0.0f ? 1.0f : -1.0f;
-    *direction = vec3_normalize(vec3_scale(
-        vec3_sub(vec3_scale(e1, v2), vec3_scale(e2, v1)), flip));
+    *direction = vec3_normalize(vec3_scale(vec3_sub(vec3_scale(e1, v2), vec3_scale(e2, v1)), flip));
     return vec3_dot(*direction, *direction) > 0.5f;
 }
 
@@ -69,8 +68,8 @@ u32 mesh_make_tangents(Arena *scratch, SourceVertex *vertices, u32 vertex_count,
     }
     for (u32 t = 0; t < index_count / 3; t++) {
         const u32 *triangle = indices + t * 3;
-        const SourceVertex *const corner[3] = {
-            &vertices[triangle[0]], &vertices[triangle[1]], &vertices[triangle[2]]};
+        const SourceVertex *const corner[3] = {&vertices[triangle[0]], &vertices[triangle[1]],
+                                               &vertices[triangle[2]]};
         Vec3 direction;
         u32 hand;
         bool mapped = u_direction(corner, &direction, &hand);

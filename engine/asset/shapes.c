@@ -65,11 +65,11 @@ static void add_band(Builder *b, Ring upper, Ring lower, u32 segments) {
         first[r] = b->vertex_count;
         for (u32 c = 0; c < segments + (point ? 0 : 1); c++) {
             Vec2 d = point ? turn(2 * c + 1, 2 * segments) : turn(c, segments);
-            Vec3 normal = vec3(rings[r]->normal.x * d.x, rings[r]->normal.y,
-                               rings[r]->normal.x * d.y);
-            add_vertex(b, vec3(rings[r]->radius * d.x, rings[r]->y, rings[r]->radius * d.y),
-                       normal, vec3(d.y, 0, -d.x),
-                       ((f32)c + (point ? 0.5f : 0.0f)) / (f32)segments, rings[r]->v);
+            Vec3 normal =
+                vec3(rings[r]->normal.x * d.x, rings[r]->normal.y, rings[r]->normal.x * d.y);
+            add_vertex(b, vec3(rings[r]->radius * d.x, rings[r]->y, rings[r]->radius * d.y), normal,
+                       vec3(d.y, 0, -d.x), ((f32)c + (point ? 0.5f : 0.0f)) / (f32)segments,
+                       rings[r]->v);
         }
     }
     for (u32 c = 0; c < segments; c++) {
@@ -147,10 +147,10 @@ static void build_icosahedron(Builder *b) {
     const Vec3 corner[12] = {{-s, l, 0}, {s, l, 0}, {-s, -l, 0}, {s, -l, 0},
                              {0, -s, l}, {0, s, l}, {0, -s, -l}, {0, s, -l},
                              {l, 0, -s}, {l, 0, s}, {-l, 0, -s}, {-l, 0, s}};
-    static const u8 face[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                   {1, 5, 9},   {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                   {3, 9, 4},   {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                   {4, 9, 5},   {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+    static const u8 face[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                   {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                   {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                   {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
     for (u32 f = 0; f < 20; f++) {
         Vec3 p = corner[face[f][0]], q = corner[face[f][1]], r = corner[face[f][2]];
         Vec3 right = vec3_normalize(vec3_sub(q, p));
@@ -180,8 +180,8 @@ static void build_torus(Builder *b, f32 tube, u32 segments, u32 rings) {
         Ring ring[2];
         for (u32 i = 0; i < 2; i++) {
             Vec2 d = turn(rings - (r + i) % rings, rings); // downwards on the outer side
-            ring[i] = (Ring){RADIUS + tube * d.y, tube * d.x, {d.y, d.x},
-                             (f32)(r + i) / (f32)rings};
+            ring[i] =
+                (Ring){RADIUS + tube * d.y, tube * d.x, {d.y, d.x}, (f32)(r + i) / (f32)rings};
         }
         add_band(b, ring[0], ring[1], segments);
     }
@@ -207,10 +207,18 @@ static ShapeDesc canonical(const ShapeDesc *desc) {
 
 static void build(Builder *b, const ShapeDesc *d) {
     switch (d->shape) {
-    case SHAPE_PLANE: add_square(b, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 0, -1), d->segments); break;
-    case SHAPE_CUBE: build_cube(b); break;
-    case SHAPE_SPHERE: build_sphere(b, d->segments, d->rings); break;
-    case SHAPE_ICOSAHEDRON: build_icosahedron(b); break;
+    case SHAPE_PLANE:
+        add_square(b, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 0, -1), d->segments);
+        break;
+    case SHAPE_CUBE:
+        build_cube(b);
+        break;
+    case SHAPE_SPHERE:
+        build_sphere(b, d->segments, d->rings);
+        break;
+    case SHAPE_ICOSAHEDRON:
+        build_icosahedron(b);
+        break;
     case SHAPE_CONE: {
         const f32 cosine = 0.89442719f, sine = 0.44721360f; // normal of the side: (2, 1) / sqrt 5
         build_side(b, 0, (Vec2){cosine, sine}, d->segments, d->rings);
@@ -220,8 +228,11 @@ static void build(Builder *b, const ShapeDesc *d) {
         build_side(b, RADIUS, (Vec2){1, 0}, d->segments, d->rings);
         add_disc(b, HALF_HEIGHT, 1, d->segments);
         break;
-    case SHAPE_TORUS: build_torus(b, d->tube, d->segments, d->rings); break;
-    case SHAPE_COUNT: break;
+    case SHAPE_TORUS:
+        build_torus(b, d->tube, d->segments, d->rings);
+        break;
+    case SHAPE_COUNT:
+        break;
     }
 }
 

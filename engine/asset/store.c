@@ -121,10 +121,10 @@ void model_grow_bounds(Model *model, const Mesh *mesh, const Mat34 *local, bool 
                                          corner & 2 ? mesh->max.y : mesh->min.y,
                                          corner & 4 ? mesh->max.z : mesh->min.z));
         if (first && corner == 0) model->min = model->max = p;
-        model->min = vec3(fminf(model->min.x, p.x), fminf(model->min.y, p.y),
-                          fminf(model->min.z, p.z));
-        model->max = vec3(fmaxf(model->max.x, p.x), fmaxf(model->max.y, p.y),
-                          fmaxf(model->max.z, p.z));
+        model->min =
+            vec3(fminf(model->min.x, p.x), fminf(model->min.y, p.y), fminf(model->min.z, p.z));
+        model->max =
+            vec3(fmaxf(model->max.x, p.x), fmaxf(model->max.y, p.y), fmaxf(model->max.z, p.z));
     }
 }
 
@@ -147,8 +147,7 @@ static void mesh_find_bounds(Mesh *mesh) {
                         lo[2] + (hi[2] - lo[2]) * 0.5f);
     f32 squared = 0;
     for (u32 i = 0; i < mesh->vertex_count; i++) {
-        Vec3 d = vec3_sub(vec3(v[i].position[0], v[i].position[1], v[i].position[2]),
-                          mesh->center);
+        Vec3 d = vec3_sub(vec3(v[i].position[0], v[i].position[1], v[i].position[2]), mesh->center);
         squared = fmaxf(squared, vec3_dot(d, d));
         mesh->has_color |= v[i].color != 0xFFFFFFFFu;
     }
