@@ -3,13 +3,12 @@
 #define COMMON_GLSL
 #include "shared.h"
 
-layout(std430, set = 0, binding = BINDING_FRAME) readonly buffer FrameBuffer { FrameRecord frame; };
-layout(std430, set = 0, binding = BINDING_INSTANCES) readonly buffer InstanceBuffer {
-    InstanceRecord instances[];
+layout(std140, set = 0, binding = BINDING_FRAME) uniform FrameBuffer { FrameRecord frame; };
+layout(std140, set = 0, binding = BINDING_MATERIALS) uniform MaterialBuffer {
+    MaterialRecord materials[MATERIALS_CAP];
 };
-layout(std430, set = 0, binding = BINDING_MATERIALS) readonly buffer MaterialBuffer {
-    MaterialRecord materials[];
-};
+// The frame again, for values that steer loops (see shared.h).
+layout(std430, set = 0, binding = BINDING_FLOW) readonly buffer FlowBuffer { FrameRecord flow; };
 
 layout(constant_id = SPEC_BRDF_MASK) const uint BRDF_MASK = 8;
 layout(constant_id = SPEC_ATTENUATION) const uint ATTENUATION = 0;
@@ -20,6 +19,8 @@ layout(constant_id = SPEC_DEBUG_VIEW) const uint DEBUG_VIEW = 0;
 layout(constant_id = SPEC_SUBGROUP_CULL) const uint SUBGROUP_CULL = 1;
 layout(constant_id = SPEC_TILE_LISTS) const uint TILE_LISTS = 0;
 layout(constant_id = SPEC_TONEMAP) const uint TONEMAP = 1;
+layout(constant_id = SPEC_DIRECTIONALS) const uint DIRECTIONAL_COUNT = 0;
+layout(constant_id = SPEC_LIGHT_BLOCKS) const uint LIGHT_BLOCKS = 0;
 
 const float PI = 3.14159265358979;
 

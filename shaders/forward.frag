@@ -24,25 +24,36 @@ void main() {
     vec3 normal = material_normal(in_uv, in_normal, in_tangent);
     Surface s = surface_make(in_position, normal, albedo.rgb, in_material);
     vec3 sum = vec3(0.0);
-    uint point_count = frame.counts.x;
+    uint point_count = flow.counts.x, spot_count = flow.counts.y;
     if (TILE_LISTS != 0u) {
         uvec2 tile = uvec2(gl_FragCoord.xy) / TILE_SIZE_PX;
         uvec4 list = tiles[tile.y * frame.counts.w + tile.x].list;
         for (uint i = 0u; i < list.y; i++) {
-            LightRecord light = lights[light_indices[list.x + i]];
-            sum += light_point(s, light.position, light.color.rgb);
+            uint index = light_indices[list.x + i];
+            sum += light_point(s, light_position(index), light_color(index).rgb);
         }
         for (uint i = list.y; i < list.y + list.z; i++) {
             uint index = light_indices[list.x + i];
-            LightRecord light = lights[index];
-            sum += light_spot(s, light.position, light.color, spots[index - point_count].direction);
+            sum += light_spot(s, light_position(index), light_color(index),
+                              spot_direction(index - point_count));
         }
+    } else if (LIGHT_BLOCKS == 2u) {
+        // One loop a block: choosing the block inside would load from both.
+        uint end = min(point_count, LIGHT_BLOCK_CAP);
+        for (uint i = 0u; i < end; i++)
+            sum += light_point(s, light_block_0[i].position, light_block_0[i].color.rgb);
+        for (uint i = LIGHT_BLOCK_CAP; i < point_count; i++)
+            sum += light_point(s, light_block_1[i - LIGHT_BLOCK_CAP].position,
+                               light_block_1[i - LIGHT_BLOCK_CAP].color.rgb);
+        for (uint i = 0u; i < spot_count; i++)
+            sum += light_spot(s, light_position(point_count + i), light_color(point_count + i),
+                              spot_direction(i));
     } else {
         for (uint i = 0u; i < point_count; i++)
-            sum += light_point(s, lights[i].position, lights[i].color.rgb);
-        for (uint i = 0u; i < frame.counts.y; i++)
-            sum += light_spot(s, lights[point_count + i].position, lights[point_count + i].color,
-                              spots[i].direction);
+            sum += light_point(s, light_position(i), light_color(i).rgb);
+        for (uint i = 0u; i < spot_count; i++)
+            sum += light_spot(s, light_position(point_count + i), light_color(point_count + i),
+                              spot_direction(i));
     }
     vec3 radiance = light_base(s, albedo.rgb, in_material) + sum * materials[in_material].emissive.w;
     out_color = vec4(radiance, albedo.a);

@@ -17,6 +17,6 @@ void main() {
     out_tangent = mesh_world_tangent();
     out_uv = in_uv;
     out_color = in_color;
-    out_material = instances[gl_InstanceIndex].ids.x;
+    out_material = in_ids.x;
     out_position = p;
 }

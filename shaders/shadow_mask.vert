@@ -9,5 +9,5 @@ layout(location = 1) flat out uint out_material;
 void main() {
     gl_Position = frame.shadow_matrix * vec4(mesh_world_position(), 1.0);
     out_uv = in_uv;
-    out_material = instances[gl_InstanceIndex].ids.x;
+    out_material = in_ids.x;
 }

@@ -25,26 +25,33 @@ typedef struct MeshVertex {
 } MeshVertex;
 #endif
 
-// --- Set 0: the frame. Every pipeline has the same layout, every binding is always written. ---
-#define BINDING_FRAME           0  // FrameRecord, storage buffer (uniform buffers in control flow
-                                   // make the software driver recompile shaders every frame)
-#define BINDING_INSTANCES       1  // InstanceRecord[]
-#define BINDING_MATERIALS       2  // MaterialRecord[]
-#define BINDING_LIGHTS          3  // LightRecord[]: points first, then spots; one dummy at the end
-#define BINDING_SPOTS           4  // SpotRecord[]: of light index - point_count
-#define BINDING_DIRECTIONALS    5  // DirectionalRecord[]
-#define BINDING_TILES           6  // TileRecord[]
-#define BINDING_LIGHT_INDICES   7  // uint[]: lists of all tiles, ascending within a tile
-#define BINDING_GBUFFER_ALBEDO  8  // sampled
-#define BINDING_GBUFFER_NORMAL  9  // sampled
-#define BINDING_DEPTH           10 // sampled
-#define BINDING_SHADOW_MAP      11 // sampled, comparison
-#define BINDING_HDR             12 // sampled
-#define BINDING_HDR_STORAGE     13 // storage image rgba16f
-#define BINDING_LDR             14 // sampled (for the upscaling blit)
-#define BINDING_ACCUMULATION    15 // sampled: deferred's full-precision light sum
-#define BINDING_OVERLAY         16 // sampled: font and UI atlas
-#define BINDING_FRAME_COUNT     17
+// --- Set 0: the frame. Every pipeline has the same layout, every binding is always written.
+// Uniform buffers hold what many invocations read alike, and materials: on the software driver a
+// vec4 costs 43 ns a pixel from a storage buffer in a fragment shader (a loop over the lanes), and
+// hardly anything from a uniform buffer. But values that steer control flow must not come from
+// a uniform buffer (that driver recompiles the shader whenever they change): those are read from
+// BINDING_FLOW, the same FrameRecord as a storage buffer, or are specialisation constants. ---
+#define BINDING_FRAME           0  // FrameRecord, uniform
+#define BINDING_MATERIALS       1  // MaterialRecord[MATERIALS_CAP], uniform
+#define BINDING_DIRECTIONALS    2  // DirectionalRecord[DIRECTIONALS_CAP], uniform
+#define BINDING_LIGHT_BLOCK_0   3  // LightRecord[LIGHT_BLOCK_CAP], uniform: lights from 0
+#define BINDING_LIGHT_BLOCK_1   4  // LightRecord[LIGHT_BLOCK_CAP], uniform: the next
+#define BINDING_SPOT_BLOCK      5  // SpotRecord[SPOT_BLOCK_CAP], uniform
+#define BINDING_FLOW            6  // FrameRecord, storage
+#define BINDING_LIGHTS          7  // LightRecord[], storage: points first, then spots; one dummy last
+#define BINDING_SPOTS           8  // SpotRecord[], storage: of light index - point_count
+#define BINDING_TILES           9  // TileRecord[], storage
+#define BINDING_LIGHT_INDICES   10 // uint[], storage: lists of all tiles, ascending within a tile
+#define BINDING_GBUFFER_ALBEDO  11 // sampled
+#define BINDING_GBUFFER_NORMAL  12 // sampled
+#define BINDING_DEPTH           13 // sampled
+#define BINDING_SHADOW_MAP      14 // sampled, comparison
+#define BINDING_HDR             15 // sampled
+#define BINDING_HDR_STORAGE     16 // storage image rgba16f
+#define BINDING_LDR             17 // sampled (for the upscaling blit)
+#define BINDING_ACCUMULATION    18 // sampled: deferred's full-precision light sum
+#define BINDING_OVERLAY         19 // sampled: font and UI atlas
+#define BINDING_FRAME_COUNT     20
 // --- Set 1: one group a material. ---
 #define BINDING_ALBEDO_TEXTURE   0
 #define BINDING_NORMAL_TEXTURE   1
@@ -57,12 +64,14 @@ typedef struct MeshVertex {
 #define SPEC_ATTENUATION   1 // Attenuation
 #define SPEC_SHADOW        2 // 1: directional 0 has a shadow map
 #define SPEC_ALPHA_MASK    3 // geometry: discard under the cutoff
-#define SPEC_SPOTS         4 // 1: there are spot lights
+#define SPEC_SPOTS         4 // 1: there are spot lights (deferred_light: this draw is of spots)
 #define SPEC_DEBUG_VIEW    5 // DebugView of the debug pass
 #define SPEC_SUBGROUP_CULL 6 // tiled: per-subgroup culling of the tile's list
 #define SPEC_TILE_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
-#define SPEC_COUNT         9
+#define SPEC_DIRECTIONALS  9 // how many directional lights
+#define SPEC_LIGHT_BLOCKS  10 // uniform blocks that hold all lights: 1, 2; 0 = too many, use storage
+#define SPEC_COUNT         11
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
@@ -72,6 +81,9 @@ typedef struct MeshVertex {
 // Survivors a subgroup keeps before it shades them (chunked: any number of lights works).
 #define SUBGROUP_LIST_CAP 256
 #define MATERIALS_CAP     256
+// 64 KiB of uniform buffer, what every device offers.
+#define LIGHT_BLOCK_CAP   2048
+#define SPOT_BLOCK_CAP    4096
 #define DIRECTIONALS_CAP  8
 #define GEOMETRY_PUSH_SIZE 16
 

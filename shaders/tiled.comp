@@ -29,11 +29,11 @@ shared uint survivors[16 * SUBGROUP_LIST_CAP];
 
 vec3 shade_points(Surface s, uint list_base, uint count) {
     vec3 sum = vec3(0.0);
-    uint dummy = frame.counts2.z;
+    uint dummy = flow.counts2.z;
     for (uint b = 0u; b < count; b += gl_SubgroupSize) {
         uint k = b + gl_SubgroupInvocationID;
         uint index = k < count ? survivors[list_base + min(k, count - 1u)] : dummy;
-        vec4 position = lights[index].position, color = lights[index].color;
+        vec4 position = light_position(index), color = light_color(index);
         uint end = min(gl_SubgroupSize, count - b);
         for (uint j = 0u; j < end; j++)
             sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j).rgb);
@@ -43,13 +43,13 @@ vec3 shade_points(Surface s, uint list_base, uint count) {
 
 vec3 shade_spots(Surface s, uint list_base, uint count) {
     vec3 sum = vec3(0.0);
-    uint dummy = frame.counts2.z, point_count = frame.counts.x;
+    uint dummy = flow.counts2.z, point_count = flow.counts.x;
     for (uint b = 0u; b < count; b += gl_SubgroupSize) {
         uint k = b + gl_SubgroupInvocationID;
         uint index = k < count ? survivors[list_base + min(k, count - 1u)] : dummy;
         uint spot = k < count ? index - point_count : 0u;
-        vec4 position = lights[index].position, color = lights[index].color;
-        vec4 direction = spots[spot].direction;
+        vec4 position = light_position(index), color = light_color(index);
+        vec4 direction = spot_direction(spot);
         uint end = min(gl_SubgroupSize, count - b);
         for (uint j = 0u; j < end; j++)
             sum += light_spot(s, subgroupShuffle(position, j), subgroupShuffle(color, j),
@@ -66,7 +66,7 @@ uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, out
     for (; b < last && count + gl_SubgroupSize <= SUBGROUP_LIST_CAP; b += gl_SubgroupSize) {
         uint k = b + gl_SubgroupInvocationID;
         uint index = light_indices[min(k, last - 1u)];
-        vec4 position = lights[index].position;
+        vec4 position = light_position(index);
         vec3 outside = max(box_min - position.xyz, vec3(0.0)) + max(position.xyz - box_max, vec3(0.0));
         bool hit = k < last && (SUBGROUP_CULL == 0u || dot(outside, outside) * position.w < 1.0);
         uvec4 ballot = subgroupBallot(hit);
@@ -92,7 +92,7 @@ void main() {
     vec3 box_max = subgroupMax(lit ? position : vec3(-1e30));
 
     uvec2 tile = gl_WorkGroupID.xy / (TILE_SIZE_PX / 8);
-    uvec4 list = tiles[tile.y * frame.counts.w + tile.x].list;
+    uvec4 list = tiles[tile.y * flow.counts.w + tile.x].list;
     uint list_base = gl_SubgroupID * SUBGROUP_LIST_CAP;
     // A subgroup that sees only sky has nothing to shade: an empty loop, not a branch.
     bool any_lit = subgroupAny(lit);

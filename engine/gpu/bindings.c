@@ -8,6 +8,7 @@
 // because drivers differ in what they do about an exhausted pool.
 #include "gpu_internal.h"
 #include <stdlib.h>
+#include <string.h>
 
 #define POOL_SETS        128u
 #define POOL_DESCRIPTORS 512u // of each kind; at least GPU_BINDINGS_CAP
@@ -15,6 +16,7 @@
 static VkDescriptorType descriptor_type(GpuBindingKind kind) {
     static const VkDescriptorType types[] = {
         [GPU_BINDING_STORAGE_BUFFER] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        [GPU_BINDING_UNIFORM_BUFFER] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
         [GPU_BINDING_SAMPLED_TEXTURE] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
         [GPU_BINDING_STORAGE_TEXTURE] = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
     };
@@ -57,8 +59,8 @@ GpuBindLayout gpu_create_bind_layout(Gpu *gpu, const GpuBindLayoutDesc *desc) {
 
 // --- Descriptor pools ---
 
-static void count_kinds(const GpuBindLayoutItem *layout, u32 out[3]) {
-    out[0] = out[1] = out[2] = 0;
+static void count_kinds(const GpuBindLayoutItem *layout, u32 out[GPU_BINDING_KIND_COUNT]) {
+    memset(out, 0, GPU_BINDING_KIND_COUNT * sizeof *out);
     for (u32 i = 0; i < layout->count; i++) out[layout->kinds[i]]++;
 }
 
@@ -69,8 +71,8 @@ static bool descriptor_pool_add(Gpu *gpu, const char *label) {
     gpu->descriptor_pools = grown;
     GpuDescriptorPool *pool = &grown[gpu->descriptor_pool_count];
     *pool = (GpuDescriptorPool){.sets_left = POOL_SETS};
-    VkDescriptorPoolSize sizes[3];
-    for (u32 kind = 0; kind < 3; kind++) {
+    VkDescriptorPoolSize sizes[GPU_BINDING_KIND_COUNT];
+    for (u32 kind = 0; kind < GPU_BINDING_KIND_COUNT; kind++) {
         sizes[kind] =
             (VkDescriptorPoolSize){descriptor_type((GpuBindingKind)kind), POOL_DESCRIPTORS};
         pool->left[kind] = POOL_DESCRIPTORS;
@@ -79,7 +81,7 @@ static bool descriptor_pool_add(Gpu *gpu, const char *label) {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
         .maxSets = POOL_SETS,
-        .poolSizeCount = 3,
+        .poolSizeCount = GPU_BINDING_KIND_COUNT,
         .pPoolSizes = sizes,
     };
     if (!GPU_CHECK(gpu, label,
@@ -94,11 +96,11 @@ static bool descriptor_pool_add(Gpu *gpu, const char *label) {
 static bool descriptor_set_from_pool(Gpu *gpu, u32 index, const GpuBindLayoutItem *layout,
                                      VkDescriptorSet *set) {
     GpuDescriptorPool *pool = &gpu->descriptor_pools[index];
-    u32 counts[3];
+    u32 counts[GPU_BINDING_KIND_COUNT];
     count_kinds(layout, counts);
-    if (pool->sets_left == 0 || counts[0] > pool->left[0] || counts[1] > pool->left[1] ||
-        counts[2] > pool->left[2])
-        return false;
+    if (pool->sets_left == 0) return false;
+    for (u32 kind = 0; kind < GPU_BINDING_KIND_COUNT; kind++)
+        if (counts[kind] > pool->left[kind]) return false;
     VkDescriptorSetAllocateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
         .descriptorPool = pool->pool,
@@ -108,7 +110,7 @@ static bool descriptor_set_from_pool(Gpu *gpu, u32 index, const GpuBindLayoutIte
     // Fragmentation may refuse what the counts allow: the next pool is tried, so no log.
     if (gpu->vk.vkAllocateDescriptorSets(gpu->device, &info, set) < 0) return false;
     pool->sets_left--;
-    for (u32 kind = 0; kind < 3; kind++) pool->left[kind] -= counts[kind];
+    for (u32 kind = 0; kind < GPU_BINDING_KIND_COUNT; kind++) pool->left[kind] -= counts[kind];
     return true;
 }
 
@@ -129,11 +131,11 @@ static bool descriptor_set_allocate(Gpu *gpu, const GpuBindLayoutItem *layout, c
 
 void gpu_descriptor_set_freed(Gpu *gpu, u32 descriptor_pool, u32 layout_id, VkDescriptorSet set) {
     GpuDescriptorPool *pool = &gpu->descriptor_pools[descriptor_pool];
-    u32 counts[3];
+    u32 counts[GPU_BINDING_KIND_COUNT];
     count_kinds(gpu_pool_get(&gpu->bind_layouts, layout_id), counts);
     gpu->vk.vkFreeDescriptorSets(gpu->device, pool->pool, 1, &set);
     pool->sets_left++;
-    for (u32 kind = 0; kind < 3; kind++) pool->left[kind] += counts[kind];
+    for (u32 kind = 0; kind < GPU_BINDING_KIND_COUNT; kind++) pool->left[kind] += counts[kind];
 }
 
 void gpu_bindings_destroy(Gpu *gpu) {
@@ -147,6 +149,10 @@ void gpu_bindings_destroy(Gpu *gpu) {
 }
 
 // --- Groups ---
+
+static bool binding_is_buffer(GpuBindingKind kind) {
+    return kind == GPU_BINDING_STORAGE_BUFFER || kind == GPU_BINDING_UNIFORM_BUFFER;
+}
 
 // Writes all bindings of one set; the DYNAMIC buffers as of this frame slot.
 static void set_write(Gpu *gpu, const GpuBindGroupDesc *desc, const GpuBindLayoutItem *layout,
@@ -165,10 +171,13 @@ static void set_write(Gpu *gpu, const GpuBindGroupDesc *desc, const GpuBindLayou
             .pImageInfo = &images[i],
             .pBufferInfo = &buffers[i],
         };
-        if (layout->kinds[i] == GPU_BINDING_STORAGE_BUFFER) {
+        if (binding_is_buffer(layout->kinds[i])) {
             const GpuBufferItem *buffer = gpu_buffer_get(gpu, binding->buffer);
-            buffers[i] =
-                (VkDescriptorBufferInfo){buffer->buffer, buffer->stride * slot, buffer->size};
+            LUZ_ASSERT(binding->offset < buffer->size);
+            u64 range = buffer->size - binding->offset;
+            if (layout->kinds[i] == GPU_BINDING_UNIFORM_BUFFER) range = MIN(range, GPU_UNIFORM_RANGE);
+            buffers[i] = (VkDescriptorBufferInfo){buffer->buffer,
+                                                  buffer->stride * slot + binding->offset, range};
             continue;
         }
         const GpuTextureItem *texture = gpu_texture_get(gpu, binding->texture);
@@ -189,10 +198,11 @@ GpuBindGroup gpu_create_bind_group(Gpu *gpu, const GpuBindGroupDesc *desc) {
     const GpuBindLayoutItem *layout = gpu_pool_get(&gpu->bind_layouts, desc->layout.id);
     u32 set_count = 1;
     for (u32 i = 0; i < layout->count; i++) {
-        if (layout->kinds[i] != GPU_BINDING_STORAGE_BUFFER) continue;
+        if (!binding_is_buffer(layout->kinds[i])) continue;
         const GpuBufferItem *buffer = gpu_buffer_get(gpu, desc->bindings[i].buffer);
         if (buffer->kind == GPU_BUFFER_DYNAMIC) set_count = gpu->frame_count;
-        if (buffer->size > gpu->info.max_storage_buffer_size) {
+        if (layout->kinds[i] == GPU_BINDING_STORAGE_BUFFER &&
+            buffer->size > gpu->info.max_storage_buffer_size) {
             LOG(GPU_LIMIT,
                 "bind group \"%s\": buffer \"%s\" of %.1f MiB, shaders here see %.1f MiB",
                 desc->label, buffer->pool.label, (f64)buffer->size / (f64)MIB(1),

@@ -110,11 +110,11 @@ void gpu_cmd_push(GpuCommands *cmd, const void *data, u32 size) {
     cmd->gpu->vk.vkCmdPushConstants(cmd->buffer, cmd->layout, GPU_STAGES, 0, size, data);
 }
 
-void gpu_cmd_bind_vertices(GpuCommands *cmd, GpuBuffer vertices) {
+void gpu_cmd_bind_vertices(GpuCommands *cmd, u32 stream, GpuBuffer vertices, u64 offset) {
     const GpuBufferItem *item = gpu_buffer_get(cmd->gpu, vertices);
     LUZ_ASSERT(item->vertex);
-    u64 offset = gpu_buffer_offset(cmd->gpu, item);
-    cmd->gpu->vk.vkCmdBindVertexBuffers(cmd->buffer, 0, 1, &item->buffer, &offset);
+    offset += gpu_buffer_offset(cmd->gpu, item);
+    cmd->gpu->vk.vkCmdBindVertexBuffers(cmd->buffer, stream, 1, &item->buffer, &offset);
 }
 
 void gpu_cmd_bind_indices(GpuCommands *cmd, GpuBuffer indices, bool are_u16) {

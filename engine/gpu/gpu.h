@@ -150,7 +150,10 @@ typedef enum GpuBindingKind {
     GPU_BINDING_STORAGE_BUFFER,
     GPU_BINDING_SAMPLED_TEXTURE, // combined with a sampler
     GPU_BINDING_STORAGE_TEXTURE,
+    GPU_BINDING_UNIFORM_BUFFER,  // at most GPU_UNIFORM_RANGE bytes from the offset are seen
+    GPU_BINDING_KIND_COUNT
 } GpuBindingKind;
+#define GPU_UNIFORM_RANGE 65536 // what every device of today and the software driver offer
 #define GPU_BINDINGS_CAP 24
 typedef struct GpuBindLayoutDesc {
     const char *label;
@@ -161,6 +164,7 @@ GpuBindLayout gpu_create_bind_layout(Gpu *gpu, const GpuBindLayoutDesc *desc);
 
 typedef struct GpuBinding {
     GpuBuffer buffer; // DYNAMIC buffers: each frame in flight binds its own copy
+    u64 offset;       // into the buffer, a multiple of 256
     GpuTexture texture;
     GpuSampler sampler;
     bool depth; // texture is a depth texture (its sampled layout)
@@ -184,10 +188,17 @@ typedef enum GpuDepth {
     GPU_DEPTH_EQUAL, // EQUAL, no write
 } GpuDepth;
 typedef enum GpuCull { GPU_CULL_BACK, GPU_CULL_NONE, GPU_CULL_FRONT } GpuCull;
-// Vertex input: MESH = MeshVertex of shaders/shared.h at locations 0 position, 1 normal (uint),
-// 2 uv, 3 tangent (uint), 4 color (unorm rgba8); UI = pos vec2, uv vec2, color rgba8 unorm (20
-// bytes) at locations 0, 1, 2.
-typedef enum GpuVertexLayout { GPU_VERTEX_NONE, GPU_VERTEX_MESH, GPU_VERTEX_UI } GpuVertexLayout;
+// Vertex input. MESH: stream 0 = MeshVertex of shaders/shared.h at locations 0 position, 1 normal
+// (uint), 2 uv, 3 tangent (uint), 4 color (unorm rgba8); stream 1 = InstanceRecord, one an
+// instance, at 5, 6, 7 (rows of the world matrix) and 8 (ids). UI: pos vec2, uv vec2, color rgba8
+// unorm (20 bytes) at 0, 1, 2. LIGHT, one an instance: stream 0 = LightRecord at 0, 1; stream 1 =
+// SpotRecord at 2.
+typedef enum GpuVertexLayout {
+    GPU_VERTEX_NONE,
+    GPU_VERTEX_MESH,
+    GPU_VERTEX_UI,
+    GPU_VERTEX_LIGHT
+} GpuVertexLayout;
 
 #define GPU_TARGETS_CAP   8
 #define GPU_SPEC_CAP      16
@@ -273,7 +284,7 @@ void gpu_cmd_scissor(GpuCommands *cmd, i32 x, i32 y, u32 width, u32 height);
 void gpu_cmd_bind_pipeline(GpuCommands *cmd, GpuPipeline pipeline);
 void gpu_cmd_bind_group(GpuCommands *cmd, u32 set, GpuBindGroup group); // after bind_pipeline
 void gpu_cmd_push(GpuCommands *cmd, const void *data, u32 size);        // after bind_pipeline
-void gpu_cmd_bind_vertices(GpuCommands *cmd, GpuBuffer vertices);
+void gpu_cmd_bind_vertices(GpuCommands *cmd, u32 stream, GpuBuffer vertices, u64 offset);
 void gpu_cmd_bind_indices(GpuCommands *cmd, GpuBuffer indices, bool are_u16);
 void gpu_cmd_draw(GpuCommands *cmd, u32 vertex_count, u32 instance_count, u32 first_vertex,
                   u32 first_instance);

@@ -124,7 +124,7 @@ typedef struct GpuPipelineItem {
 
 typedef struct GpuDescriptorPool {
     VkDescriptorPool pool;
-    u32 sets_left, left[3]; // by GpuBindingKind
+    u32 sets_left, left[GPU_BINDING_KIND_COUNT]; // by GpuBindingKind
 } GpuDescriptorPool;
 
 // A shader in use: the embedded blob, or what the reload compiled last.

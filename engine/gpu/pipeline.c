@@ -61,19 +61,41 @@ static const VkVertexInputAttributeDescription mesh_attributes[] = {
     {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(MeshVertex, uv)},
     {3, 0, VK_FORMAT_R32_UINT, offsetof(MeshVertex, tangent)},
     {4, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(MeshVertex, color)},
+    {5, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(InstanceRecord, world[0])},
+    {6, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(InstanceRecord, world[1])},
+    {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(InstanceRecord, world[2])},
+    {8, 1, VK_FORMAT_R32G32B32A32_UINT, offsetof(InstanceRecord, ids)},
+};
+static const VkVertexInputBindingDescription mesh_streams[] = {
+    {0, sizeof(MeshVertex), VK_VERTEX_INPUT_RATE_VERTEX},
+    {1, sizeof(InstanceRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
 };
 static const VkVertexInputAttributeDescription ui_attributes[] = {
     {0, 0, VK_FORMAT_R32G32_SFLOAT, 0},
     {1, 0, VK_FORMAT_R32G32_SFLOAT, 8},
     {2, 0, VK_FORMAT_R8G8B8A8_UNORM, 16},
 };
+static const VkVertexInputBindingDescription ui_streams[] = {{0, 20, VK_VERTEX_INPUT_RATE_VERTEX}};
+static const VkVertexInputAttributeDescription light_attributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, position)},
+    {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, color)},
+    {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(SpotRecord, direction)},
+};
+static const VkVertexInputBindingDescription light_streams[] = {
+    {0, sizeof(LightRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
+    {1, sizeof(SpotRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
+};
+#define VERTEX_LAYOUT(name) \
+    {COUNT_OF(name##_streams), COUNT_OF(name##_attributes), name##_streams, name##_attributes}
 static const struct {
-    u32 stride, count;
+    u32 stream_count, attribute_count;
+    const VkVertexInputBindingDescription *streams;
     const VkVertexInputAttributeDescription *attributes;
 } vertex_layouts[] = {
-    [GPU_VERTEX_NONE] = {0, 0, NULL},
-    [GPU_VERTEX_MESH] = {sizeof(MeshVertex), COUNT_OF(mesh_attributes), mesh_attributes},
-    [GPU_VERTEX_UI] = {20, COUNT_OF(ui_attributes), ui_attributes},
+    [GPU_VERTEX_NONE] = {0},
+    [GPU_VERTEX_MESH] = VERTEX_LAYOUT(mesh),
+    [GPU_VERTEX_UI] = VERTEX_LAYOUT(ui),
+    [GPU_VERTEX_LIGHT] = VERTEX_LAYOUT(light),
 };
 
 // --- Building ---
@@ -81,13 +103,11 @@ static const struct {
 static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
                            const VkPipelineShaderStageCreateInfo *stages, VkPipeline *out) {
     const GpuPipelineDesc *desc = &item->desc;
-    VkVertexInputBindingDescription vertex_binding = {0, vertex_layouts[desc->vertex_layout].stride,
-                                                      VK_VERTEX_INPUT_RATE_VERTEX};
     VkPipelineVertexInputStateCreateInfo vertices = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = desc->vertex_layout != GPU_VERTEX_NONE,
-        .pVertexBindingDescriptions = &vertex_binding,
-        .vertexAttributeDescriptionCount = vertex_layouts[desc->vertex_layout].count,
+        .vertexBindingDescriptionCount = vertex_layouts[desc->vertex_layout].stream_count,
+        .pVertexBindingDescriptions = vertex_layouts[desc->vertex_layout].streams,
+        .vertexAttributeDescriptionCount = vertex_layouts[desc->vertex_layout].attribute_count,
         .pVertexAttributeDescriptions = vertex_layouts[desc->vertex_layout].attributes,
     };
     VkPipelineInputAssemblyStateCreateInfo assembly = {

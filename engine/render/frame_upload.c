@@ -19,13 +19,6 @@ static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {
     FRAME_BUFFERS(X)
 #undef X
 };
-static const u32 buffer_bindings[FRAME_BUFFER_COUNT] = {
-    BINDING_FRAME,
-#define X(id, section, binding, Type) binding,
-    FRAME_BUFFERS(X)
-#undef X
-};
-
 static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 height) {
     if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
     renderer->targets[id] = gpu_create_texture(
@@ -69,10 +62,11 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
 }
 
 // Data and its size; the buffer grows to the next power of two.
-static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u64 size) {
+static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u64 size,
+                        u64 min_cap) {
     GpuBuffer *buffer = &renderer->buffers[id];
     if (!buffer->id || gpu_buffer_size(renderer->gpu, *buffer) < size) {
-        u64 cap = 1024;
+        u64 cap = MAX(min_cap, 1024);
         while (cap < size) cap *= 2;
         if (cap > gpu_info(renderer->gpu)->max_storage_buffer_size) cap = size;
         if (size > gpu_info(renderer->gpu)->max_storage_buffer_size) {
@@ -84,7 +78,8 @@ static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u6
         if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
         *buffer = gpu_create_buffer(renderer->gpu,
                                     &(GpuBufferDesc){.label = buffer_labels[id], .heap = "frame",
-                                                     .kind = GPU_BUFFER_DYNAMIC, .size = cap});
+                                                     .kind = GPU_BUFFER_DYNAMIC, .size = cap,
+                                                     .vertex = true});
         renderer->frame_group_stale = true;
         if (!buffer->id) return false;
     }
@@ -97,8 +92,22 @@ static bool frame_group_update(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
     GpuBindGroupDesc desc = {.label = "frame", .layout = renderer->frame_layout};
-    for (u32 i = 0; i < FRAME_BUFFER_COUNT; i++)
-        desc.bindings[buffer_bindings[i]].buffer = renderer->buffers[i];
+    const struct { u32 binding; FrameBuffer buffer; u64 offset; } buffers[] = {
+        {BINDING_FRAME, FRAME_BUFFER_FRAME, 0},
+        {BINDING_MATERIALS, FRAME_BUFFER_MATERIALS, 0},
+        {BINDING_DIRECTIONALS, FRAME_BUFFER_DIRECTIONALS, 0},
+        {BINDING_LIGHT_BLOCK_0, FRAME_BUFFER_LIGHTS, 0},
+        {BINDING_LIGHT_BLOCK_1, FRAME_BUFFER_LIGHTS, LIGHT_BLOCK_CAP * sizeof(LightRecord)},
+        {BINDING_SPOT_BLOCK, FRAME_BUFFER_SPOTS, 0},
+        {BINDING_FLOW, FRAME_BUFFER_FRAME, 0},
+        {BINDING_LIGHTS, FRAME_BUFFER_LIGHTS, 0},
+        {BINDING_SPOTS, FRAME_BUFFER_SPOTS, 0},
+        {BINDING_TILES, FRAME_BUFFER_TILES, 0},
+        {BINDING_LIGHT_INDICES, FRAME_BUFFER_LIGHT_INDICES, 0},
+    };
+    for (u32 i = 0; i < COUNT_OF(buffers); i++)
+        desc.bindings[buffers[i].binding] = (GpuBinding){
+            .buffer = renderer->buffers[buffers[i].buffer], .offset = buffers[i].offset};
     const struct { u32 binding; RenderResource resource; GpuSampler sampler; bool depth; } images[] = {
         {BINDING_GBUFFER_ALBEDO, RESOURCE_GBUFFER_ALBEDO, renderer->sampler_nearest, false},
         {BINDING_GBUFFER_NORMAL, RESOURCE_GBUFFER_NORMAL, renderer->sampler_nearest, false},
@@ -123,11 +132,11 @@ static bool frame_group_update(Renderer *renderer) {
 
 bool frame_upload(Renderer *renderer, const Packet *packet) {
     if (!targets_resize(renderer, packet)) return false;
-    if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame))
+    if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0))
         return false;
-#define X(id, section, binding, Type)                                                      \
+#define X(id, section, Type, min_count)                                                    \
     if (!buffer_fill(renderer, FRAME_BUFFER_##id, PACKET_DATA(packet, section, Type),      \
-                     (u64)packet->section.count * sizeof(Type)))                           \
+                     (u64)packet->section.count * sizeof(Type), min_count * sizeof(Type))) \
         return false;
     FRAME_BUFFERS(X)
 #undef X

@@ -80,7 +80,7 @@ static void overlay_bind(const PassContext *c, PipelineKind kind, f32 width, f32
     gpu_cmd_bind_group(c->cmd, 0, c->renderer->frame_group);
     f32 push[4] = {1.0f / width, 1.0f / height, 0, 0};
     gpu_cmd_push(c->cmd, push, sizeof push);
-    gpu_cmd_bind_vertices(c->cmd, vertices);
+    gpu_cmd_bind_vertices(c->cmd, 0, vertices, 0);
     gpu_cmd_bind_indices(c->cmd, indices, true);
 }
 

@@ -20,7 +20,8 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
     Renderer *r = c->renderer;
     const PacketDraw *draws = (const PacketDraw *)((const u8 *)c->packet + section.offset);
     const PacketMaterial *materials = PACKET_DATA(c->packet, material_bindings, PacketMaterial);
-    gpu_cmd_bind_vertices(c->cmd, r->vertices);
+    gpu_cmd_bind_vertices(c->cmd, 0, r->vertices, 0);
+    gpu_cmd_bind_vertices(c->cmd, 1, r->buffers[FRAME_BUFFER_INSTANCES], 0);
     gpu_cmd_bind_indices(c->cmd, r->indices, false);
     GpuPipeline bound = {0};
     u32 bound_material = UINT32_MAX;
@@ -48,11 +49,24 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
     }
 }
 
-static void draw_fullscreen(const PassContext *c, PipelineKind kind, u32 instance_count) {
+static void draw_fullscreen(const PassContext *c, PipelineKind kind) {
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, false, false);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);
-    gpu_cmd_draw(c->cmd, 3, instance_count, 0, 0);
+    gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
+    c->renderer->stats.draw_calls++;
+}
+
+// One full-screen triangle a light, lights [first, first + count).
+static void draw_lights(const PassContext *c, PipelineKind kind, u32 first, u32 count) {
+    if (count == 0) return;
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, false, false);
+    if (!pipeline.id) return;
+    bind_frame(c, pipeline);
+    gpu_cmd_bind_vertices(c->cmd, 0, c->renderer->buffers[FRAME_BUFFER_LIGHTS],
+                          first * sizeof(LightRecord));
+    gpu_cmd_bind_vertices(c->cmd, 1, c->renderer->buffers[FRAME_BUFFER_SPOTS], 0);
+    gpu_cmd_draw(c->cmd, 3, count, 0, 0);
     c->renderer->stats.draw_calls++;
 }
 
@@ -115,9 +129,10 @@ static const Pass forward_pass = {
 
 static void deferred_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {CLEARED(ACCUMULATION)}, .target_count = 1});
-    draw_fullscreen(c, PIPELINE_DEFERRED_BASE, 1);
-    u32 light_count = c->packet->frame.counts[0] + c->packet->frame.counts[1];
-    if (light_count) draw_fullscreen(c, PIPELINE_DEFERRED_LIGHT, light_count);
+    draw_fullscreen(c, PIPELINE_DEFERRED_BASE);
+    u32 point_count = c->packet->frame.counts[0], spot_count = c->packet->frame.counts[1];
+    draw_lights(c, PIPELINE_DEFERRED_POINTS, 0, point_count);
+    draw_lights(c, PIPELINE_DEFERRED_SPOTS, point_count, spot_count);
     gpu_cmd_end_rendering(c->cmd);
 }
 static const Pass deferred_pass = {
@@ -129,7 +144,7 @@ static const Pass deferred_pass = {
 
 static void resolve_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(HDR)}, .target_count = 1});
-    draw_fullscreen(c, PIPELINE_DEFERRED_RESOLVE, 1);
+    draw_fullscreen(c, PIPELINE_DEFERRED_RESOLVE);
     gpu_cmd_end_rendering(c->cmd);
 }
 static const Pass resolve_pass = {
@@ -154,7 +169,7 @@ static const Pass tiled_pass = {
 static void over_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(HDR)}, .target_count = 1, .depth = TARGET(DEPTH),
                              .depth_read_only = true});
-    draw_fullscreen(c, PIPELINE_SKY, 1);
+    draw_fullscreen(c, PIPELINE_SKY);
     draw_list(c, PIPELINE_EMISSIVE, c->packet->emissive_draws, false);
     draw_list(c, PIPELINE_FORWARD_BLEND, c->packet->blend_draws, false);
     gpu_cmd_end_rendering(c->cmd);
@@ -168,7 +183,7 @@ static const Pass over_pass = {
 
 static void tonemap_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(LDR)}, .target_count = 1});
-    draw_fullscreen(c, PIPELINE_TONEMAP, 1);
+    draw_fullscreen(c, PIPELINE_TONEMAP);
     text_record(c);
     gpu_cmd_end_rendering(c->cmd);
 }
@@ -177,7 +192,7 @@ static const Pass tonemap_pass = {
 
 static void debug_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(LDR)}, .target_count = 1});
-    draw_fullscreen(c, PIPELINE_DEBUG, 1);
+    draw_fullscreen(c, PIPELINE_DEBUG);
     text_record(c);
     gpu_cmd_end_rendering(c->cmd);
 }

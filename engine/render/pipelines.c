@@ -17,7 +17,8 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 // settings share a pipeline that does not depend on them.
 #define SPEC_BIT(id) (1u << (id))
 #define SPEC_LIGHTING \
-    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) | SPEC_BIT(SPEC_SPOTS))
+    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) |          \
+     SPEC_BIT(SPEC_SPOTS) | SPEC_BIT(SPEC_DIRECTIONALS) | SPEC_BIT(SPEC_LIGHT_BLOCKS))
 
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
@@ -54,9 +55,14 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_DEFERRED_BASE] = {.label = "deferred base", .vertex = "fullscreen.vert",
         .fragment = "deferred_base.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
         .cull = GPU_CULL_NONE, .spec_mask = SPEC_LIGHTING},
-    [PIPELINE_DEFERRED_LIGHT] = {.label = "deferred light", .vertex = "deferred_light.vert",
+    [PIPELINE_DEFERRED_POINTS] = {.label = "deferred points", .vertex = "deferred_light.vert",
         .fragment = "deferred_light.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
-        .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .spec_mask = SPEC_LIGHTING},
+        .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .vertex_layout = GPU_VERTEX_LIGHT,
+        .spec_mask = SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION)},
+    [PIPELINE_DEFERRED_SPOTS] = {.label = "deferred spots", .vertex = "deferred_light.vert",
+        .fragment = "deferred_light.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
+        .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .vertex_layout = GPU_VERTEX_LIGHT,
+        .spec_mask = SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SPOTS)},
     [PIPELINE_DEFERRED_RESOLVE] = {.label = "deferred resolve", .vertex = "fullscreen.vert",
         .fragment = "deferred_resolve.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
         .cull = GPU_CULL_NONE},
@@ -126,6 +132,10 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,
         [SPEC_TILE_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
         [SPEC_TONEMAP] = settings->tonemap,
+        [SPEC_DIRECTIONALS] = packet->directionals.count,
+        [SPEC_LIGHT_BLOCKS] = packet->spots.count > SPOT_BLOCK_CAP ? 0
+                              : packet->lights.count <= LIGHT_BLOCK_CAP     ? 1
+                              : packet->lights.count <= 2 * LIGHT_BLOCK_CAP ? 2 : 0,
     };
     for (u32 i = 0; i < SPEC_COUNT; i++)
         key.spec[i] = rows[kind].spec_mask & SPEC_BIT(i) ? spec[i] : 0;

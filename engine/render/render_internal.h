@@ -24,15 +24,16 @@ typedef enum RenderResource {
 } RenderResource;
 extern const GpuFormat resource_formats[RESOURCE_COUNT];
 
-// Buffers filled from the packet each frame: X(id, section, binding, element type).
-#define FRAME_BUFFERS(X)                                                            \
-    X(INSTANCES, instances, BINDING_INSTANCES, InstanceRecord)                      \
-    X(MATERIALS, materials, BINDING_MATERIALS, MaterialRecord)                      \
-    X(LIGHTS, lights, BINDING_LIGHTS, LightRecord)                                  \
-    X(SPOTS, spots, BINDING_SPOTS, SpotRecord)                                      \
-    X(DIRECTIONALS, directionals, BINDING_DIRECTIONALS, DirectionalRecord)          \
-    X(TILES, tiles, BINDING_TILES, TileRecord)                                      \
-    X(LIGHT_INDICES, light_indices, BINDING_LIGHT_INDICES, u32)
+// Buffers filled from the packet each frame: X(id, section, element type, smallest count). The
+// smallest count makes a buffer cover the uniform block that views it.
+#define FRAME_BUFFERS(X)                                              \
+    X(INSTANCES, instances, InstanceRecord, 1)                        \
+    X(MATERIALS, materials, MaterialRecord, MATERIALS_CAP)            \
+    X(DIRECTIONALS, directionals, DirectionalRecord, DIRECTIONALS_CAP) \
+    X(LIGHTS, lights, LightRecord, 2 * LIGHT_BLOCK_CAP)               \
+    X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                       \
+    X(TILES, tiles, TileRecord, 1)                                    \
+    X(LIGHT_INDICES, light_indices, u32, 1)
 typedef enum FrameBuffer {
     FRAME_BUFFER_FRAME, // the FrameRecord itself
 #define X(id, ...) FRAME_BUFFER_##id,
@@ -50,7 +51,8 @@ typedef enum PipelineKind {
     PIPELINE_FORWARD,
     PIPELINE_FORWARD_BLEND,
     PIPELINE_DEFERRED_BASE,
-    PIPELINE_DEFERRED_LIGHT,
+    PIPELINE_DEFERRED_POINTS,
+    PIPELINE_DEFERRED_SPOTS,
     PIPELINE_DEFERRED_RESOLVE,
     PIPELINE_TILED,
     PIPELINE_SKY,

@@ -19,7 +19,8 @@ Renderer *renderer_create(Gpu *gpu) {
     }
     GpuBindLayoutDesc frame = {.label = "frame", .count = BINDING_FRAME_COUNT};
     for (u32 i = 0; i < BINDING_FRAME_COUNT; i++)
-        frame.kinds[i] = i <= BINDING_LIGHT_INDICES ? GPU_BINDING_STORAGE_BUFFER
+        frame.kinds[i] = i <= BINDING_SPOT_BLOCK      ? GPU_BINDING_UNIFORM_BUFFER
+                         : i <= BINDING_LIGHT_INDICES ? GPU_BINDING_STORAGE_BUFFER
                          : i == BINDING_HDR_STORAGE ? GPU_BINDING_STORAGE_TEXTURE
                                                     : GPU_BINDING_SAMPLED_TEXTURE;
     renderer->frame_layout = gpu_create_bind_layout(gpu, &frame);
@@ -127,9 +128,10 @@ static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratc
     Packet *copy = arena_push(scratch, packet->size, CACHE_LINE);
     memcpy(copy, packet, packet->size);
     copy->settings = settings;
-    // Without local lights: thousands would make the slow paths' first frame take seconds, and the
-    // shaders compile just the same.
-    copy->frame.counts[0] = copy->frame.counts[1] = 0;
+    // One light of each kind that is there (counting the dummy): thousands would make the slow
+    // paths' first frame take seconds, and the shaders compile just the same.
+    copy->frame.counts[0] = 1;
+    copy->frame.counts[1] = MIN(copy->frame.counts[1], 1);
     memset(PACKET_WRITE(copy, tiles, TileRecord), 0, copy->tiles.count * sizeof(TileRecord));
     bool ok = renderer_render_image(renderer, copy, NULL, NULL);
     arena_rewind(scratch, mark);

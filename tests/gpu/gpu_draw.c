@@ -90,7 +90,8 @@ TEST_GPU(gpu, draws_with_depth_and_culling) {
                                                  .height = SIDE});
     gpu_cmd_bind_pipeline(cmd, pipeline);
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
-    gpu_cmd_bind_vertices(cmd, buffer);
+    gpu_cmd_bind_vertices(cmd, 0, buffer, 0);
+    gpu_cmd_bind_vertices(cmd, 1, buffer, 0); // the test shader reads no instance
     gpu_cmd_bind_indices(cmd, indices, true);
     gpu_cmd_draw_indexed(cmd, 3, 1, 0, 0, 0);
     gpu_cmd_draw_indexed(cmd, 3, 1, 3, 3, 0);
@@ -164,7 +165,8 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
     gpu_cmd_begin_rendering(cmd, &rendering);
     gpu_cmd_bind_pipeline(cmd, write);
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
-    gpu_cmd_bind_vertices(cmd, buffer);
+    gpu_cmd_bind_vertices(cmd, 0, buffer, 0);
+    gpu_cmd_bind_vertices(cmd, 1, buffer, 0); // the test shader reads no instance
     gpu_cmd_draw(cmd, 3, 1, 0, 0);
     gpu_cmd_end_rendering(cmd);
     gpu_cmd_barriers(
@@ -178,7 +180,8 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
     gpu_cmd_begin_rendering(cmd, &rendering);
     gpu_cmd_bind_pipeline(cmd, equal);
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
-    gpu_cmd_bind_vertices(cmd, buffer);
+    gpu_cmd_bind_vertices(cmd, 0, buffer, 0);
+    gpu_cmd_bind_vertices(cmd, 1, buffer, 0); // the test shader reads no instance
     gpu_cmd_draw(cmd, 3, 1, 3, 0); // equal where both triangles are
     gpu_cmd_bind_pipeline(cmd, test);
     gpu_cmd_draw(cmd, 3, 1, 6, 0); // behind the first, before nothing
@@ -240,7 +243,8 @@ static void blend_layers(GpuFormat format, GpuBlend blend, f32 out[4]) {
                                                  .width = SIDE,
                                                  .height = SIDE});
     gpu_cmd_bind_pipeline(cmd, pipeline);
-    gpu_cmd_bind_vertices(cmd, buffer);
+    gpu_cmd_bind_vertices(cmd, 0, buffer, 0);
+    gpu_cmd_bind_vertices(cmd, 1, buffer, 0); // the test shader reads no instance
     if (blend == GPU_BLEND_ADD) {
         gpu_cmd_push(cmd, (f32[]){0.25f, 0.5f, 1.0f, 0.0f}, 16);
         for (u32 i = 0; i < 64; i++) gpu_cmd_draw(cmd, 3, 1, 0, 0);
