@@ -14,9 +14,7 @@
 //     build/fuzz/corpus
 //
 // The input goes the real way, asset_load_model through a FileRoot: into the one file of a fresh
-// folder in $TMPDIR (default /dev/shm, so that no disk is worn). Known and harmless: signed
-// overflow inside stb_image on damaged JPEGs (add -fno-sanitize=signed-integer-overflow,shift
-// for image.c to fuzz past it).
+// folder in $TMPDIR (default /dev/shm, so that no disk is worn).
 #include "../../engine/asset/asset_internal.h"
 #include <fcntl.h>
 #include <stdio.h>
