@@ -43,7 +43,7 @@ typedef struct Contact {
     Vec3 facing;   // normal of the obstacle's face, on the capsule's side
     bool at_foot;  // the lower end of the capsule's axis is nearest
 } Contact;
-// Deepest one; of equal ones the first.
+// Deepest one; of equally deep ones that which faces up most.
 Contact collision_deepest(const NearShapes *shapes, const Capsule *capsule);
 
 Vec3 closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);

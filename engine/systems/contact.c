@@ -4,6 +4,8 @@
 #include "collision.h"
 #include <math.h>
 
+#define SAME_DEPTH_M 1e-5f
+
 // C. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5: by Voronoi regions.
 Vec3 closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     Vec3 ab = vec3_sub(b, a), ac = vec3_sub(c, a), ap = vec3_sub(p, a);
@@ -137,7 +139,11 @@ Contact collision_deepest(const NearShapes *shapes, const Capsule *capsule) {
             t->min.y > capsule->high.y + r || t->max.y < capsule->low.y - r)
             continue;
         Contact contact = contact_with_triangle(capsule, t);
-        if (contact.depth > deepest.depth) deepest = contact;
+        if (contact.depth <= 0.0f) continue;
+        // The edge of a step belongs to its riser and to its top alike: the top decides.
+        bool same = fabsf(contact.depth - deepest.depth) < SAME_DEPTH_M;
+        if (same ? contact.facing.y > deepest.facing.y : contact.depth > deepest.depth)
+            deepest = contact;
     }
     return deepest;
 }

@@ -25,6 +25,7 @@
 #define PITCH_MAX_DEG     89.0f
 #define TOUCH_M           1e-4f // overlap that is left alone: a gap of twice the radius lets through
 #define PUSHES_MAX        12
+#define DROP_STEP_MIN_M   1e-3f
 #define STEPS_MAX         256
 #define FALL_SPEED_MAX    55.0f // m/s
 #define GROUND_GRIP       0.25f // share of the wanted change of speed that a tick gives
@@ -35,8 +36,10 @@ typedef struct Body {
     Vec3 feet;    // lowest point of the capsule
     Vec3 velocity;
     f32 radius, height;
+    f32 floor_y;   // where the newest floor touched it
     bool grounded; // a floor held it
     bool blocked;  // a wall or slope turned it
+    bool squeezed; // it began the tick where there is no room
 } Body;
 
 static Capsule body_capsule(const Body *body) {
@@ -58,6 +61,7 @@ static void push_out(Body *body, const Contact *contact, Vec3 *way, bool plainly
     bool under_foot = contact->at_foot && n.y > 0.0f && level2 < radius * radius;
     if (under_foot && contact->facing.y >= FLOOR_COS &&
         contact->point.y - body->feet.y <= STEP_HEIGHT_M) {
+        body->floor_y = contact->point.y;
         body->feet.y = contact->point.y + sqrtf(radius * radius - level2) - radius;
         if (body->velocity.y <= 0.0f) body->grounded = true;
         body->velocity.y = MAX(body->velocity.y, 0.0f);
@@ -81,13 +85,15 @@ static void push_out(Body *body, const Contact *contact, Vec3 *way, bool plainly
     *way = without_into(*way, n);
 }
 
-static void settle_contacts(Body *body, const NearShapes *shapes, Vec3 *way) {
+// False if obstacles push against each other: there is no room here.
+static bool settle_contacts(Body *body, const NearShapes *shapes, Vec3 *way) {
     for (u32 i = 0; i < PUSHES_MAX; i++) {
         Capsule capsule = body_capsule(body);
         Contact contact = collision_deepest(shapes, &capsule);
-        if (contact.depth <= TOUCH_M) return;
+        if (contact.depth <= TOUCH_M) return true;
         push_out(body, &contact, way, i >= PUSHES_MAX / 2);
     }
+    return false;
 }
 
 // Goes a way, sliding along what it meets.
@@ -96,47 +102,64 @@ static void move(Body *body, const NearShapes *shapes, Vec3 way) {
     u32 steps = length > step_m ? MIN((u32)(length / step_m) + 1, STEPS_MAX) : 1;
     Vec3 step = vec3_scale(way, 1.0f / (f32)steps);
     for (u32 i = 0; i < steps; i++) {
+        Vec3 before = body->feet;
         body->feet = vec3_add(body->feet, step);
-        settle_contacts(body, shapes, &step);
+        if (settle_contacts(body, shapes, &step)) continue;
+        // Squeezing on would end inside of something. A body that is inside already (a door
+        // closed over it) takes what the pushes give.
+        body->blocked = true;
+        if (body->squeezed) continue;
+        body->feet = before;
+        return;
     }
+}
+
+// Lowers the body onto the highest floor within `distance`. False (untouched) if there is none, or
+// something else is in the way. The foot is round: beside the edge of a step it must come to rest
+// before it is beside the riser, so a lowering that ends there is tried again in halves.
+static bool drop(Body *body, const NearShapes *shapes, f32 distance) {
+    Body probe = *body;
+    probe.grounded = false;
+    probe.velocity.y = 0.0f; // one who rises is not held by floors
+    f32 lowest = body->feet.y - distance, step = body->radius * 0.5f;
+    while (probe.feet.y > lowest && step > DROP_STEP_MIN_M) {
+        Body next = probe;
+        Vec3 nowhere = {0, 0, 0};
+        next.blocked = false;
+        next.feet.y = MAX(next.feet.y - step, lowest);
+        bool room = settle_contacts(&next, shapes, &nowhere);
+        if (next.grounded && room) {
+            body->feet = next.feet;
+            body->floor_y = next.floor_y;
+            body->grounded = true;
+            return true;
+        }
+        if (next.blocked || !room)
+            step *= 0.5f;
+        else
+            probe = next;
+    }
+    return false;
 }
 
 // Up, along, down. False (body untouched) if that does not end on a floor farther on.
 static bool climb_step(Body *body, const NearShapes *shapes, const Body *start, Vec3 way) {
     Body climber = *start;
+    climber.velocity.y = 0.0f;
     move(&climber, shapes, vec3(0, STEP_HEIGHT_M, 0));
     f32 raised = climber.feet.y - start->feet.y;
     if (!(raised > TOUCH_M)) return false;
     climber.velocity = vec3(start->velocity.x, 0.0f, start->velocity.z);
     climber.blocked = false;
     move(&climber, shapes, way);
-    Vec3 velocity = climber.velocity;
-    climber.grounded = false;
-    move(&climber, shapes, vec3(0, -raised, 0));
-    if (!climber.grounded) return false;
+    // The round foot is lifted by edges on its way: what counts is how high it found its floor.
+    if (!drop(&climber, shapes, raised)) return false;
+    if (climber.floor_y > start->feet.y + STEP_HEIGHT_M + TOUCH_M) return false;
     f32 plain = (body->feet.x - start->feet.x) * way.x + (body->feet.z - start->feet.z) * way.z;
     f32 climbed =
         (climber.feet.x - start->feet.x) * way.x + (climber.feet.z - start->feet.z) * way.z;
-    f32 length = vec3_length(way);
-    if (!(climbed > plain + 1e-3f * length * length)) return false;
+    if (!(climbed > plain + 1e-3f * vec3_dot(way, way))) return false;
     *body = climber;
-    body->velocity = velocity;
-    return true;
-}
-
-// A walker who stood stays on the ground over edges and down steps. False: there is none.
-static bool snap_down(Body *body, const NearShapes *shapes) {
-    Body probe = *body;
-    probe.grounded = false;
-    f32 start_y = probe.feet.y, step_m = MIN(body->radius * 0.5f, STEP_HEIGHT_M);
-    while (!probe.grounded && start_y - probe.feet.y < STEP_HEIGHT_M) {
-        f32 before_y = probe.feet.y;
-        move(&probe, shapes, vec3(0, -step_m, 0));
-        if (before_y - probe.feet.y < 0.25f * step_m) break; // held by something else
-    }
-    if (!probe.grounded || start_y - probe.feet.y > STEP_HEIGHT_M) return false;
-    body->feet = probe.feet;
-    body->grounded = true;
     return true;
 }
 
@@ -194,13 +217,16 @@ static void walk(Body *body, CollisionWorld *collision, const World *world, cons
     Vec3 high = {body->feet.x + reach, body->feet.y + body->height + reach, body->feet.z + reach};
     NearShapes shapes = collision_gather(collision, world, low, high, scratch);
 
+    Vec3 nowhere = {0, 0, 0};
+    body->squeezed = !settle_contacts(body, &shapes, &nowhere); // what moved in since the last tick
     const Body start = *body;
     body->grounded = body->blocked = false;
     move(body, &shapes, way);
     Vec3 level_way = {way.x, 0.0f, way.z};
     bool goes = vec3_dot(level_way, level_way) > 0.0f;
     if (stood && !jumps && body->blocked && goes) climb_step(body, &shapes, &start, level_way);
-    if (stood && !jumps && !body->grounded) snap_down(body, &shapes);
+    // A walker who stood stays on the ground over edges and down steps.
+    if (stood && !jumps && !body->grounded) drop(body, &shapes, STEP_HEIGHT_M);
     // Standing still on a slope: what is left of the iteration must not creep.
     Vec3 moved = vec3_sub(body->feet, start.feet);
     if (stood && !goes && body->grounded && vec3_dot(moved, moved) < 1e-3f * 1e-3f)

@@ -1,0 +1,233 @@
+// frame_packet.c: packets from strangers: damaged in thousands of ways, they are refused or they are
+// safe, by the word of a second checker that shares nothing with the first.
+#include "systems_fixture.h"
+#include "../test.h"
+#include "../../engine/base/random.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Packet *make_packet(SystemsFixture *f, u32 count) {
+    fixture_fill(f, 0xF177, count);
+    f->world->tick = 321;
+    systems_settle(&f->systems, &f->context);
+    return fixture_packet(f, ENTITY_NONE, settings_default(), 320, 200, 0);
+}
+
+// Reads what a renderer reads, asking before each access. Returns what is wrong.
+static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 texture_count) {
+    const Packet *p = (const Packet *)block;
+#define NEED(x) \
+    if (!(x)) return #x
+#define X(name, Type)                                                          \
+    NEED(p->name.offset >= sizeof(Packet) && p->name.offset % CACHE_LINE == 0); \
+    NEED((u64)p->name.offset + (u64)p->name.count * sizeof(Type) <= size);
+    PACKET_SECTIONS(X)
+#undef X
+    NEED(p->width_px >= 1 && p->width_px <= PACKET_SIDE_MAX && p->height_px >= 1);
+    NEED(p->height_px <= PACKET_SIDE_MAX && p->shadow_size_px <= 4096);
+    NEED(p->settings.path < PATH_COUNT && p->settings.view < VIEW_COUNT);
+    NEED(p->settings.scale >= 0.25f && p->settings.scale <= 1.0f);
+    NEED(p->frame.counts2[2] < p->lights.count);
+    NEED((u64)p->frame.counts[0] + p->frame.counts[1] < p->lights.count);
+    NEED(p->frame.counts[1] <= p->spots.count && p->frame.counts[2] <= p->directionals.count);
+    NEED(p->shadow_size_px == 0 || p->directionals.count > 0);
+    for (u32 i = 0; i < 16; i++) {
+        NEED(isfinite(p->frame.view_projection[i]) && isfinite(p->frame.view[i]));
+        NEED(isfinite(p->frame.shadow_matrix[i]));
+    }
+    const PacketSection draws[] = {p->opaque_draws, p->mask_draws,   p->blend_draws,
+                                   p->emissive_draws, p->shadow_draws, p->shadow_mask_draws};
+    u64 drawn = 0;
+    for (u32 list = 0; list < COUNT_OF(draws); list++) {
+        for (u32 i = 0; i < draws[list].count; i++) {
+            const PacketDraw *d = (const PacketDraw *)(block + draws[list].offset) + i;
+            NEED(d->mesh < mesh_count && d->material < p->materials.count);
+            NEED((u64)d->first_instance + d->instance_count <= p->instances.count);
+            drawn += d->instance_count;
+        }
+    }
+    NEED(drawn <= 2 * (u64)p->instances.count);
+    for (u32 i = 0; i < p->instances.count; i++) {
+        const InstanceRecord *r = PACKET_DATA(p, instances, InstanceRecord) + i;
+        NEED(r->ids[0] < p->materials.count);
+        for (u32 k = 0; k < 12; k++) NEED(isfinite(r->world[k / 4][k % 4]));
+    }
+    NEED(p->materials.count <= MATERIALS_CAP && p->material_bindings.count == p->materials.count);
+    for (u32 i = 0; i < p->materials.count; i++) {
+        const PacketMaterial *m = PACKET_DATA(p, material_bindings, PacketMaterial) + i;
+        NEED(m->albedo_texture < MAX(texture_count, 1) && m->normal_texture < MAX(texture_count, 1));
+        NEED(m->emissive_texture < MAX(texture_count, 1) && m->alpha_mode < 3);
+    }
+    u32 tiles_x = (p->width_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
+    u32 tiles_y = (p->height_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
+    NEED(p->frame.counts[3] == tiles_x && p->tiles.count == tiles_x * tiles_y);
+    for (u32 t = 0; t < p->tiles.count; t++) {
+        const u32 *list = PACKET_DATA(p, tiles, TileRecord)[t].list;
+        NEED((u64)list[0] + list[1] + list[2] <= p->light_indices.count);
+        const u32 *indices = PACKET_DATA(p, light_indices, u32) + list[0];
+        for (u32 i = 0; i < list[1]; i++) NEED(indices[i] < p->frame.counts[0]);
+        for (u32 i = list[1]; i < list[1] + list[2]; i++) {
+            NEED(indices[i] >= p->frame.counts[0]); // its spot record is index - points
+            NEED(indices[i] - p->frame.counts[0] < p->spots.count);
+        }
+    }
+    for (u32 i = 0; i < p->lights.count; i++)
+        for (u32 k = 0; k < 4; k++)
+            NEED(isfinite(PACKET_DATA(p, lights, LightRecord)[i].position[k]));
+    for (u32 i = 0; i < p->texts.count; i++) {
+        const PacketText *t = PACKET_DATA(p, texts, PacketText) + i;
+        NEED((u64)t->offset + t->length <= p->characters.count && isfinite(t->size_px));
+    }
+#undef NEED
+    return NULL;
+}
+
+TEST(frame_packet, built_packets_are_valid) {
+    const u32 counts[] = {0, 1, 40, 300};
+    for (u32 i = 0; i < COUNT_OF(counts); i++) {
+        SystemsFixture *f = systems_fixture_create(1);
+        const Packet *p = make_packet(f, counts[i]);
+        const char *problem =
+            packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT);
+        if (problem) fail_msg("%u things: %s", counts[i], problem);
+        assert_null(check_plainly((const u8 *)p, p->size, FIXTURE_MESH_COUNT,
+                                  FIXTURE_TEXTURE_COUNT));
+        // A store with fewer meshes or textures cannot draw it.
+        if (counts[i] > 1) {
+            assert_non_null(packet_validate(p, p->size, 2, FIXTURE_TEXTURE_COUNT));
+            assert_non_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, 1));
+        }
+        systems_fixture_destroy(f);
+    }
+}
+
+TEST(frame_packet, sizes_and_alignment_are_checked) {
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *p = make_packet(f, 10);
+    u8 *copy = aligned_alloc(64, p->size + 128);
+    memcpy(copy, p, p->size);
+    assert_null(packet_validate(copy, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    for (u64 size = 0; size < p->size; size += 1 + size / 7)
+        assert_non_null(packet_validate(copy, size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_non_null(
+        packet_validate(copy, p->size + 64, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    memmove(copy + 4, copy, p->size);
+    assert_non_null(
+        packet_validate(copy + 4, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_non_null(packet_validate(NULL, 0, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    free(copy);
+    systems_fixture_destroy(f);
+}
+
+// A word of the packet gets an evil value, or two words change places, or a section's fields do.
+static void damage(u32 *words, u64 word_count, u64 seed, u32 round) {
+    static const u32 evil[] = {0,          1,          2,          3,          0x7F800000u,
+                               0x7FC00000u, 0xFF800000u, 0xFFFFFFFFu, 0x80000000u, 0x7FFFFFFFu,
+                               64,         128,        1u << 24,   0x10000u};
+    const u64 header = sizeof(Packet) / 4;
+    u32 hits = 1 + random_u32(seed, 1, round) % 3;
+    for (u32 hit = 0; hit < hits; hit++) {
+        u64 draw = (u64)round * 8 + hit;
+        // Half of the hits go to the header, where the sections are.
+        u64 range = random_u32(seed, 2, draw) & 1 ? header : word_count;
+        u64 at = random_u64(seed, 3, draw) % range, other = random_u64(seed, 4, draw) % range;
+        u32 swap = words[at];
+        switch (random_u32(seed, 5, draw) % 5) {
+        case 0: words[at] = evil[random_u32(seed, 6, draw) % COUNT_OF(evil)]; break;
+        case 1: words[at] = words[other], words[other] = swap; break;
+        case 2: words[at] ^= 1u << (random_u32(seed, 6, draw) & 31); break;
+        case 3: words[at] += random_u32(seed, 6, draw) & 1 ? 1u : 0xFFFFFFFFu; break;
+        case 4: words[at] = random_u32(seed, 6, draw); break;
+        }
+    }
+}
+
+TEST(frame_packet, damaged_packets_are_refused_or_safe) {
+    const u64 seed = 0xBADF00D;
+    printf("seed %llx\n", (unsigned long long)seed);
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *good = make_packet(f, 24);
+    u64 size = good->size;
+    u32 refused = 0, taken = 0;
+    for (u32 round = 0; round < 20000; round++) {
+        u8 *copy = malloc(size); // an allocation of its own: the sanitizer sees a byte too far
+        memcpy(copy, good, size);
+        damage((u32 *)copy, size / 4, seed, round);
+        if (packet_validate(copy, size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT)) {
+            refused++;
+        } else {
+            const char *problem =
+                check_plainly(copy, size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT);
+            if (problem) fail_msg("round %u was taken, but not: %s", round, problem);
+            taken++;
+        }
+        free(copy);
+    }
+    printf("%u refused, %u harmless\n", refused, taken);
+    assert_true(refused > 5000 && taken > 500);
+    systems_fixture_destroy(f);
+}
+
+// Every index field by itself, one too large and far too large.
+TEST(frame_packet, each_index_is_checked) {
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *good = make_packet(f, 60);
+    assert_true(good->opaque_draws.count && good->mask_draws.count && good->blend_draws.count);
+    assert_true(good->emissive_draws.count && good->shadow_draws.count && good->texts.count);
+    assert_true(good->spots.count && good->light_indices.count && good->shadow_mask_draws.count);
+    Packet *p = malloc(good->size);
+    memcpy(p, good, good->size);
+#define TOO_LARGE(field, limit)                                                               \
+    do {                                                                                      \
+        u32 kept = (field), values[] = {(limit), (limit) + 1, 0x7FFFFFFF, 0xFFFFFFFF};        \
+        for (u32 v_ = 0; v_ < 4; v_++) {                                                      \
+            (field) = values[v_];                                                             \
+            if (!packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT))      \
+                fail_msg(#field " = %u was taken", values[v_]);                               \
+        }                                                                                     \
+        (field) = kept;                                                                       \
+    } while (0)
+#define DRAW_FIELDS(section)                                                              \
+    do {                                                                                  \
+        PacketDraw *d = PACKET_WRITE(p, section, PacketDraw) + p->section.count - 1;      \
+        TOO_LARGE(d->mesh, FIXTURE_MESH_COUNT);                                           \
+        TOO_LARGE(d->material, p->materials.count);                                       \
+        TOO_LARGE(d->first_instance, p->instances.count);                                 \
+        TOO_LARGE(d->instance_count, p->instances.count + 1 - d->first_instance);         \
+    } while (0)
+    DRAW_FIELDS(opaque_draws);
+    DRAW_FIELDS(mask_draws);
+    DRAW_FIELDS(blend_draws);
+    DRAW_FIELDS(emissive_draws);
+    DRAW_FIELDS(shadow_draws);
+    DRAW_FIELDS(shadow_mask_draws);
+    TOO_LARGE(PACKET_WRITE(p, instances, InstanceRecord)[3].ids[0], p->materials.count);
+    PacketMaterial *m = PACKET_WRITE(p, material_bindings, PacketMaterial);
+    TOO_LARGE(m->albedo_texture, FIXTURE_TEXTURE_COUNT);
+    TOO_LARGE(m->normal_texture, FIXTURE_TEXTURE_COUNT);
+    TOO_LARGE(m->emissive_texture, FIXTURE_TEXTURE_COUNT);
+    TOO_LARGE(m->alpha_mode, 3);
+    TOO_LARGE(m->double_sided, 2);
+    TOO_LARGE(m->emissive_pass, 2);
+    u32 *indices = PACKET_WRITE(p, light_indices, u32);
+    TOO_LARGE(indices[0], p->lights.count - 1); // the dummy is in no list
+    TOO_LARGE(indices[p->light_indices.count - 1], p->lights.count - 1);
+    TileRecord *tiles = PACKET_WRITE(p, tiles, TileRecord);
+    TOO_LARGE(tiles[p->tiles.count - 1].list[0], p->light_indices.count + 1);
+    TOO_LARGE(tiles[p->tiles.count / 2].list[1], tiles[p->tiles.count / 2].list[1] + 1);
+    TOO_LARGE(tiles[p->tiles.count / 2].list[2], tiles[p->tiles.count / 2].list[2] + 1);
+    PacketText *text = PACKET_WRITE(p, texts, PacketText);
+    TOO_LARGE(text->offset, p->characters.count + 1);
+    TOO_LARGE(text->length, p->characters.count + 1);
+    TOO_LARGE(p->width_px, p->width_px + 1);
+    TOO_LARGE(p->shadow_size_px, 4097);
+    TOO_LARGE(p->brdf_mask, 64);
+    TOO_LARGE(p->attenuation, 3);
+    TOO_LARGE(p->flags, 4);
+    for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts[i], p->frame.counts[i] + 1);
+    for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts2[i], p->frame.counts2[i] + 1);
+    assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    free(p);
+    systems_fixture_destroy(f);
+}
