@@ -25,17 +25,16 @@ void carve_capital(Soup *s, float y0, float y1, float r0, float r1, int segments
                    float sweep_deg) {
     Capital c = {y0, y1, r0, r1, start_deg, sweep_deg};
     float around = (r0 + r1) * 0.5f * sweep_deg * PI_F / 180 / s->tile_m;
-    shape_surface(s, capital_point, &c, segments, 5, vec2(around, (y1 - y0) / s->tile_m));
+    shape_surface(s, capital_point, &c, segments, 4, vec2(around, (y1 - y0) / s->tile_m));
 }
 
-// An attic base in five points: torus, scotia, torus.
+// An attic base in four points: torus, scotia, torus.
 static void carve_base(Soup *s, float y0, float r, int segments, float start, float sweep) {
-    Vec2 base[5] = {{r * 1.62f, y0},
-                    {r * 1.66f, y0 + r * 0.45f},
-                    {r * 1.22f, y0 + r * 0.72f},
-                    {r * 1.28f, y0 + r * 1.05f},
+    Vec2 base[4] = {{r * 1.64f, y0},
+                    {r * 1.6f, y0 + r * 0.5f},
+                    {r * 1.2f, y0 + r * 0.75f},
                     {r * 1.0f, y0 + r * 1.25f}};
-    shape_lathe(s, base, 5, segments, start, sweep);
+    shape_lathe(s, base, 4, segments, start, sweep);
 }
 
 typedef struct Twist {
@@ -58,18 +57,15 @@ void carve_column(Soup *s, Vec3 foot, float y1, float radius, float twist) {
     carve_base(s, foot.y, radius, 10, 0, 360);
     if (twist != 0) {
         Twist t = {base_top, cap_y, radius, twist};
-        shape_surface(s, twist_point, &t, 12, 9, vec2(1, (cap_y - base_top) / s->tile_m));
+        shape_surface(s, twist_point, &t, 12, 6, vec2(1, (cap_y - base_top) / s->tile_m));
     } else {
-        Vec2 shaft[3] = {{radius, base_top},
-                         {radius * 0.97f, (base_top + cap_y) * 0.5f},
-                         {radius * 0.88f, cap_y}};
-        shape_turn(s, shaft, 3, 10);
+        Vec2 shaft[2] = {{radius, base_top}, {radius * 0.88f, cap_y}};
+        shape_turn(s, shaft, 2, 10);
     }
-    Vec2 ring[4] = {{radius * 0.88f, cap_y - radius * 0.3f},
-                    {radius * 1.15f, cap_y - radius * 0.2f},
-                    {radius * 1.15f, cap_y},
-                    {radius * 0.9f, cap_y + radius * 0.1f}};
-    shape_turn(s, ring, 4, 10);
+    Vec2 ring[3] = {{radius * 0.88f, cap_y - radius * 0.3f},
+                    {radius * 1.17f, cap_y - radius * 0.12f},
+                    {radius * 0.9f, cap_y + radius * 0.08f}};
+    shape_turn(s, ring, 3, 10);
     carve_capital(s, cap_y, y1, radius * 0.9f, radius * 1.75f, 16, 0, 360);
     s->transform = saved;
 }
@@ -85,12 +81,10 @@ void carve_wall_shaft(Soup *s, Vec3 foot, float y1, float radius, float start_de
     carve_base(s, foot.y + 0.12f, radius, segments, start_deg, sweep_deg);
     Vec2 shaft[2] = {{radius, foot.y + 0.12f + radius * 1.25f}, {radius * 0.92f, cap_y}};
     shape_lathe(s, shaft, 2, segments, start_deg, sweep_deg);
-    carve_capital(s, cap_y, y1 - 0.06f, radius * 0.92f, radius * 1.5f, segments * 2, start_deg,
+    carve_capital(s, cap_y, y1 - 0.06f, radius * 0.92f, radius * 1.5f, segments * 3 / 2, start_deg,
                   sweep_deg);
-    Vec2 abacus[4] = {{radius * 1.5f, y1 - 0.07f},
-                      {radius * 1.9f, y1 - 0.05f},
-                      {radius * 1.9f, y1},
-                      {0, y1}};
+    Vec2 abacus[4] = {
+        {radius * 1.5f, y1 - 0.07f}, {radius * 1.9f, y1 - 0.05f}, {radius * 1.9f, y1}, {0, y1}};
     shape_lathe(s, abacus, 4, segments, start_deg, sweep_deg);
     s->transform = saved;
 }
@@ -102,18 +96,20 @@ typedef struct Rosette {
 
 static Vec3 rosette_point(const void *context, float u, float v) {
     const Rosette *r = context;
-    float angle = u * 2 * PI_F, rim = 0.86f + 0.14f * cosf(angle * r->petals);
-    float dist = v * r->radius * rim;
-    float petal = 0.5f + 0.5f * cosf(angle * r->petals);
-    float relief = v < 0.3f ? 1.0f - v : sinf((v - 0.28f) * 4.3f) * (0.4f + 0.5f * petal);
-    if (v > 0.99f) relief = 0;
+    float angle = u * 2 * PI_F, petal = fabsf(cosf(angle * r->petals * 0.5f));
+    // Petals part from the heart outwards; the rim lies in the wall.
+    float dist = v * r->radius * (1 - 0.22f * (1 - petal) * v * v);
+    float heart = 0.8f * float_smooth(0.26f, 0.0f, v);
+    float bulge = sinf(float_clamp((v - 0.2f) / 0.8f, 0, 1) * PI_F);
+    float relief = heart + bulge * (0.25f + 0.6f * sqrtf(petal)) + 0.12f * (1 - v);
+    if (v > 0.99f) relief = -0.02f;
     return vec3(r->center.x + dist * cosf(angle) * -r->facing, r->center.y + dist * sinf(angle),
                 r->center.z + r->facing * r->depth * relief);
 }
 
 void carve_rosette(Soup *s, Vec3 center, float radius, float depth, int petals, float facing) {
     Rosette r = {center, radius, depth, (float)petals, facing};
-    shape_surface(s, rosette_point, &r, petals * 3, 4, vec2(1, radius / s->tile_m));
+    shape_surface(s, rosette_point, &r, petals * 4, 4, vec2(1, radius / s->tile_m));
 }
 
 // ---- vaults -------------------------------------------------------------------------------------
@@ -121,8 +117,10 @@ void carve_rosette(Soup *s, Vec3 center, float radius, float depth, int petals, 
 static void quad_down(Soup *s, Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec2 ua, Vec2 ub, Vec2 uc, Vec2 ud) {
     Vec3 n = vec3_add(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)),
                       vec3_cross(vec3_sub(c, a), vec3_sub(d, a)));
-    if (n.y < 0) soup_quad(s, a, b, c, d, ua, ub, uc, ud);
-    else soup_quad(s, d, c, b, a, ud, uc, ub, ua);
+    if (n.y < 0)
+        soup_quad(s, a, b, c, d, ua, ub, uc, ud);
+    else
+        soup_quad(s, d, c, b, a, ud, uc, ub, ua);
 }
 
 // In each of the four cells the courses run straight from the diagonal to the edge, at the height
@@ -174,7 +172,7 @@ static void carve_rib(Soup *s, const Vault *v, Affine place, float half, float w
     s->transform = affine_mul(&saved, &place);
     s->transform = affine_mul(&s->transform, &stretch);
     s->tile_m = tile / half;
-    Vec2 profile[6] = {{d * 0.25f, w},         {-d * 0.45f, w},        {-d, w * 0.42f},
+    Vec2 profile[6] = {{d * 0.25f, w},   {-d * 0.45f, w},  {-d, w * 0.42f},
                        {-d, -w * 0.42f}, {-d * 0.45f, -w}, {d * 0.25f, -w}};
     shape_arch_moulding(s, &unit, profile, 6, segments, 0, -1);
     s->tile_m = tile;
@@ -194,9 +192,9 @@ void carve_vault_diagonals(Soup *s, const Vault *v, float width, float depth, in
     Affine saved = s->transform, place = affine_turn_x(180);
     place.t = vec3(cx, v->spring_y + v->rise + 0.02f, cz);
     s->transform = affine_mul(&saved, &place);
-    carve_capital(s, 0, depth * 1.25f, width * 0.9f, width * 1.15f, 12, 0, 360);
+    carve_capital(s, 0, depth * 1.25f, width * 0.9f, width * 1.15f, 8, 0, 360);
     Vec2 cap[3] = {{width * 1.05f, depth * 1.25f}, {width * 0.6f, depth * 1.5f}, {0, depth * 1.6f}};
-    shape_turn(s, cap, 3, 12);
+    shape_turn(s, cap, 3, 10);
     s->transform = saved;
 }
 

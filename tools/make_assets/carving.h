@@ -17,8 +17,7 @@ void carve_capital(Soup *s, float y0, float y1, float r0, float r1, int segments
                    float sweep_deg);
 
 // A shaft that is engaged in a wall, with base and capital; it covers sweep_deg from start_deg.
-void carve_wall_shaft(Soup *s, Vec3 foot, float y1, float radius, float start_deg,
-                      float sweep_deg);
+void carve_wall_shaft(Soup *s, Vec3 foot, float y1, float radius, float start_deg, float sweep_deg);
 
 // A flower in relief in the xy plane, facing -z (facing < 0) or +z.
 void carve_rosette(Soup *s, Vec3 center, float radius, float depth, int petals, float facing);

@@ -39,7 +39,7 @@ __attribute__((format(printf, 2, 3))) static void buffer_print(Buffer *b, const 
 typedef struct Writer {
     Buffer bin, views, accessors, meshes;
     int view_count, accessor_count;
-    int material_index[MAT_COUNT]; // -1: unused
+    int material_index[MAT_COUNT];       // -1: unused
     int texture_index[TEXTURE_COUNT][2]; // image of albedo, of normals
     int material_count;
 } Writer;
@@ -88,8 +88,8 @@ static void write_primitive(Writer *w, const Mesh *m, int material, bool first) 
     snprintf(bounds, sizeof bounds, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]",
              (double)min.x, (double)min.y, (double)min.z, (double)max.x, (double)max.y,
              (double)max.z);
-    int position = write_accessor(w, scratch, (size_t)n * 12, TARGET_VERTICES, 5126, n, "VEC3",
-                                  bounds);
+    int position =
+        write_accessor(w, scratch, (size_t)n * 12, TARGET_VERTICES, 5126, n, "VEC3", bounds);
     for (uint32_t i = 0; i < n; i++) memcpy(scratch + i * 3, &m->vertices[lo + i].normal, 12);
     int normal = write_accessor(w, scratch, (size_t)n * 12, TARGET_VERTICES, 5126, n, "VEC3", "");
     for (uint32_t i = 0; i < n; i++) memcpy(scratch + i * 4, m->vertices[lo + i].tangent, 16);
@@ -98,8 +98,10 @@ static void write_primitive(Writer *w, const Mesh *m, int material, bool first) 
     int uv = write_accessor(w, scratch, (size_t)n * 8, TARGET_VERTICES, 5126, n, "VEC2", "");
     bool small = n <= 65535;
     for (uint32_t i = 0; i < index_count; i++) {
-        if (small) ((uint16_t *)packed)[i] = (uint16_t)(indices[i] - lo);
-        else ((uint32_t *)packed)[i] = indices[i] - lo;
+        if (small)
+            ((uint16_t *)packed)[i] = (uint16_t)(indices[i] - lo);
+        else
+            ((uint32_t *)packed)[i] = indices[i] - lo;
     }
     int list = write_accessor(w, packed, (size_t)index_count * (small ? 2 : 4), TARGET_INDICES,
                               small ? 5123 : 5125, index_count, "SCALAR", "");
@@ -132,8 +134,8 @@ static void write_material(Writer *w, Buffer *out, const Material *m) {
     buffer_print(out,
                  "\"baseColorFactor\":[%.6g,%.6g,%.6g,1],\"metallicFactor\":%.6g,"
                  "\"roughnessFactor\":%.6g}",
-                 (double)m->color[0], (double)m->color[1], (double)m->color[2],
-                 (double)m->metallic, (double)m->roughness);
+                 (double)m->color[0], (double)m->color[1], (double)m->color[2], (double)m->metallic,
+                 (double)m->roughness);
     if (normal >= 0) buffer_print(out, ",\"normalTexture\":{\"index\":%d}", normal);
     if (m->emissive[0] + m->emissive[1] + m->emissive[2] > 0) {
         buffer_print(out, ",\"emissiveFactor\":[%.6g,%.6g,%.6g]", (double)m->emissive[0],
@@ -174,8 +176,7 @@ static void write_materials(Writer *w, Buffer *json) {
             emissive |= m->emissive_strength > 0;
         }
     }
-    if (emissive)
-        buffer_print(json, ",\"extensionsUsed\":[\"KHR_materials_emissive_strength\"]");
+    if (emissive) buffer_print(json, ",\"extensionsUsed\":[\"KHR_materials_emissive_strength\"]");
     buffer_print(json, ",\"materials\":[");
     buffer_append(json, materials.data, materials.size);
     buffer_print(json, "]");

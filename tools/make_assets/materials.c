@@ -9,43 +9,64 @@ static const Material MATERIALS[MAT_COUNT] = {
     [MAT_ASHLAR] = {"ashlar", TEXTURE_ASHLAR, 2.0f, {1, 1, 1}, 0, 0.88f, {0, 0, 0}, 0, 0, 0},
     [MAT_ASHLAR_DARK] =
         {"ashlar_dark", TEXTURE_ASHLAR, 2.0f, {0.72f, 0.74f, 0.78f}, 0, 0.9f, {0, 0, 0}, 0, 0, 0},
-    [MAT_VAULT] =
-        {"vault", TEXTURE_ASHLAR, 1.35f, {1, 0.96f, 0.9f}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
+    [MAT_VAULT] = {"vault", TEXTURE_ASHLAR, 1.35f, {1, 0.96f, 0.9f}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
     [MAT_CARVED] = {"carved", TEXTURE_CARVED, 1.0f, {1, 1, 1}, 0, 0.72f, {0, 0, 0}, 0, 0, 0},
     [MAT_CARVED_RED] =
         {"carved_red", TEXTURE_CARVED, 1.0f, {0.78f, 0.5f, 0.4f}, 0, 0.74f, {0, 0, 0}, 0, 0, 0},
-    [MAT_CARVED_DARK] = {"carved_dark", TEXTURE_CARVED, 1.0f, {0.62f, 0.63f, 0.62f}, 0, 0.45f,
-                         {0, 0, 0}, 0, 0, 0},
-    [MAT_MARBLE] =
-        {"marble", TEXTURE_CARVED, 0.8f, {1, 1, 1}, 0, 0.38f, {0, 0, 0}, 0, 0, 0},
+    [MAT_CARVED_DARK] =
+        {"carved_dark", TEXTURE_CARVED, 1.0f, {0.62f, 0.63f, 0.62f}, 0, 0.45f, {0, 0, 0}, 0, 0, 0},
+    [MAT_MARBLE] = {"marble", TEXTURE_CARVED, 0.8f, {1, 1, 1}, 0, 0.38f, {0, 0, 0}, 0, 0, 0},
     [MAT_FLOOR] = {"floor", TEXTURE_FLOOR, 1.5f, {1, 1, 1}, 0, 0.42f, {0, 0, 0}, 0, 0, 0},
     [MAT_ROOF] = {"roof", TEXTURE_ROOF, 1.5f, {1, 1, 1}, 0, 0.8f, {0, 0, 0}, 0, 0, 0},
     [MAT_GRAVEL] = {"gravel", TEXTURE_GRAVEL, 1.2f, {1, 1, 1}, 0, 0.9f, {0, 0, 0}, 0, 0, 0},
     [MAT_GRASS] = {"grass", TEXTURE_GRASS, 1.6f, {1, 1, 1}, 0, 0.85f, {0, 0, 0}, 0, 0, 0},
     [MAT_MEADOW] =
         {"meadow", TEXTURE_GRASS, 3.0f, {0.75f, 0.8f, 0.7f}, 0, 0.95f, {0, 0, 0}, 0, 0, 0},
-    [MAT_HEDGE] = {"hedge", TEXTURE_HEDGE, 0.8f, {1, 1, 1}, 0, 0.7f, {0, 0, 0}, 0, 0, 0},
+    [MAT_HEDGE] = {"hedge", TEXTURE_HEDGE, 0.8f, {1, 1, 1}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
     [MAT_BARK] = {"bark", TEXTURE_BARK, 0.6f, {1, 1, 1}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
     [MAT_WOOD] = {"wood", TEXTURE_WOOD, 1.2f, {1, 1, 1}, 0, 0.62f, {0, 0, 0}, 0, 0, 0},
     [MAT_IRON] = {"iron", TEXTURE_IRON, 0.25f, {1, 1, 1}, 0.85f, 0.5f, {0, 0, 0}, 0, 0, 0},
-    [MAT_BRASS] =
-        {"brass", TEXTURE_NONE, 1, {0.72f, 0.48f, 0.18f}, 1, 0.32f, {0, 0, 0}, 0, 0, 0},
+    [MAT_BRASS] = {"brass", TEXTURE_NONE, 1, {0.72f, 0.48f, 0.18f}, 1, 0.32f, {0, 0, 0}, 0, 0, 0},
     [MAT_CLAY] = {"clay", TEXTURE_NONE, 1, {0.35f, 0.14f, 0.075f}, 0, 0.75f, {0, 0, 0}, 0, 0, 0},
     [MAT_SOIL] = {"soil", TEXTURE_NONE, 1, {0.05f, 0.036f, 0.026f}, 0, 0.95f, {0, 0, 0}, 0, 0, 0},
-    [MAT_WATER] =
-        {"water", TEXTURE_WATER, 1.1f, {1, 1, 1}, 0, 0.06f, {0, 0, 0}, 0, 0, 0},
+    [MAT_WATER] = {"water", TEXTURE_WATER, 1.1f, {1, 1, 1}, 0, 0.06f, {0, 0, 0}, 0, 0, 0},
+    [MAT_SPRAY] =
+        {"spray", TEXTURE_NONE, 1, {0.5f, 0.6f, 0.66f}, 0, 0.15f, {0.3f, 0.55f, 0.7f}, 0.12f, 0, 0},
     [MAT_LEAF_CYPRESS] =
-        {"leaf_cypress", TEXTURE_LEAF_CYPRESS, 1, {1, 1, 1}, 0, 0.7f, {0, 0, 0}, 0, 0, 1},
-    [MAT_LEAF_ROSE] =
-        {"leaf_rose", TEXTURE_LEAF_ROSE, 1, {1, 1, 1}, 0, 0.6f, {0, 0, 0}, 0, 0, 1},
-    [MAT_LEAF_IVY] = {"leaf_ivy", TEXTURE_LEAF_IVY, 1, {1, 1, 1}, 0, 0.5f, {0, 0, 0}, 0, 0, 1},
-    [MAT_LEAF_FERN] = {"leaf_fern", TEXTURE_LEAF_FERN, 1, {1, 1, 1}, 0, 0.6f, {0, 0, 0}, 0, 0, 1},
-    [MAT_GLASS_LANCET] = {"glass_lancet", TEXTURE_GLASS_LANCET, 1, {0.25f, 0.25f, 0.25f}, 0, 0.2f,
-                          {1, 1, 1}, 1.6f, 1, 0},
-    [MAT_GLASS_ROSE] = {"glass_rose", TEXTURE_GLASS_ROSE, 1, {0.25f, 0.25f, 0.25f}, 0, 0.2f,
-                        {1, 1, 1}, 3.0f, 1, 0},
-    [MAT_LANTERN_GLASS] = {"lantern_glass", TEXTURE_NONE, 1, {0.6f, 0.4f, 0.2f}, 0, 0.25f,
-                           {1, 0.46f, 0.13f}, 3.2f, 0, 0},
+        {"leaf_cypress", TEXTURE_LEAF_CYPRESS, 1, {1, 1, 1}, 0, 0.85f, {0, 0, 0}, 0, 0, 1},
+    [MAT_LEAF_ROSE] = {"leaf_rose", TEXTURE_LEAF_ROSE, 1, {1, 1, 1}, 0, 0.85f, {0, 0, 0}, 0, 0, 1},
+    [MAT_LEAF_IVY] = {"leaf_ivy", TEXTURE_LEAF_IVY, 1, {1, 1, 1}, 0, 0.85f, {0, 0, 0}, 0, 0, 1},
+    [MAT_LEAF_FERN] = {"leaf_fern", TEXTURE_LEAF_FERN, 1, {1, 1, 1}, 0, 0.85f, {0, 0, 0}, 0, 0, 1},
+    [MAT_GLASS_LANCET] = {"glass_lancet",
+                          TEXTURE_GLASS_LANCET,
+                          1,
+                          {0.25f, 0.25f, 0.25f},
+                          0,
+                          0.2f,
+                          {1, 1, 1},
+                          1.6f,
+                          1,
+                          0},
+    [MAT_GLASS_ROSE] = {"glass_rose",
+                        TEXTURE_GLASS_ROSE,
+                        1,
+                        {0.25f, 0.25f, 0.25f},
+                        0,
+                        0.2f,
+                        {1, 1, 1},
+                        3.0f,
+                        1,
+                        0},
+    [MAT_LANTERN_GLASS] = {"lantern_glass",
+                           TEXTURE_NONE,
+                           1,
+                           {0.6f, 0.4f, 0.2f},
+                           0,
+                           0.25f,
+                           {1, 0.46f, 0.13f},
+                           3.2f,
+                           0,
+                           0},
     [MAT_FLAME] =
         {"flame", TEXTURE_NONE, 1, {0.1f, 0.05f, 0.02f}, 0, 1, {1, 0.38f, 0.07f}, 7, 0, 0},
     [MAT_FLAME_CORE] =
@@ -56,12 +77,10 @@ static const Material MATERIALS[MAT_COUNT] = {
         {"wax", TEXTURE_NONE, 1, {0.72f, 0.62f, 0.45f}, 0, 0.5f, {1, 0.55f, 0.2f}, 0.12f, 0, 0},
     [MAT_FIREFLY] =
         {"firefly", TEXTURE_NONE, 1, {0.3f, 0.3f, 0.1f}, 0, 1, {0.72f, 1, 0.16f}, 3.2f, 0, 0},
-    [MAT_CRYSTAL] = {"crystal", TEXTURE_NONE, 1, {0.25f, 0.35f, 0.5f}, 0, 0.12f,
-                     {0.3f, 0.6f, 1}, 2.5f, 0, 0},
-    [MAT_TAPESTRY] =
-        {"tapestry", TEXTURE_TAPESTRY, 1, {1, 1, 1}, 0, 0.95f, {0, 0, 0}, 0, 0, 0},
-    [MAT_HILL] =
-        {"hill", TEXTURE_NONE, 1, {0.02f, 0.03f, 0.035f}, 0, 1, {0, 0, 0}, 0, 0, 0},
+    [MAT_CRYSTAL] =
+        {"crystal", TEXTURE_NONE, 1, {0.25f, 0.35f, 0.5f}, 0, 0.12f, {0.3f, 0.6f, 1}, 2.5f, 0, 0},
+    [MAT_TAPESTRY] = {"tapestry", TEXTURE_TAPESTRY, 1, {1, 1, 1}, 0, 0.95f, {0, 0, 0}, 0, 0, 0},
+    [MAT_HILL] = {"hill", TEXTURE_NONE, 1, {0.022f, 0.034f, 0.026f}, 0, 1, {0, 0, 0}, 0, 0, 0},
     [MAT_MOON] = {"moon", TEXTURE_NONE, 1, {0, 0, 0}, 0, 1, {0.95f, 0.96f, 1}, 3.5f, 0, 0},
     [MAT_PLASTER_WHITE] =
         {"plaster_white", TEXTURE_NONE, 1, {0.73f, 0.73f, 0.72f}, 0, 0.9f, {0, 0, 0}, 0, 0, 0},

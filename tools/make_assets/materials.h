@@ -8,13 +8,13 @@
 #include "texture.h"
 
 enum {
-    MAT_ASHLAR,       // wall of squared blocks
-    MAT_ASHLAR_DARK,  // the same, weathered: outer walls, tower
-    MAT_VAULT,        // the same in small courses: vault webs
-    MAT_CARVED,       // dressed limestone: columns, mouldings
-    MAT_CARVED_RED,   // every second voussoir
-    MAT_CARVED_DARK,  // wet or shaded stone: basins, steps
-    MAT_MARBLE,       // statue, altar
+    MAT_ASHLAR,      // wall of squared blocks
+    MAT_ASHLAR_DARK, // the same, weathered: outer walls, tower
+    MAT_VAULT,       // the same in small courses: vault webs
+    MAT_CARVED,      // dressed limestone: columns, mouldings
+    MAT_CARVED_RED,  // every second voussoir
+    MAT_CARVED_DARK, // wet or shaded stone: basins, steps
+    MAT_MARBLE,      // statue, altar
     MAT_FLOOR,
     MAT_ROOF,
     MAT_GRAVEL,
@@ -28,6 +28,7 @@ enum {
     MAT_CLAY,
     MAT_SOIL,
     MAT_WATER,
+    MAT_SPRAY, // falling threads of water
     MAT_LEAF_CYPRESS,
     MAT_LEAF_ROSE,
     MAT_LEAF_IVY,

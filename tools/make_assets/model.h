@@ -10,7 +10,7 @@
 #include "shapes.h"
 
 #define MODEL_MESHES_MAX 16
-#define MODEL_NODES_MAX 96
+#define MODEL_NODES_MAX  96
 
 typedef struct ModelNode {
     const char *name;

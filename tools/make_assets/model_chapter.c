@@ -8,15 +8,15 @@
 #include "models.h"
 #include "walk.h"
 
-#define BAY 3.0f
+#define BAY        3.0f
 #define HALF_WIDTH 4.5f
-#define FRONT WALK_WALL_BACK
-#define BACK (FRONT + 12.0f)
-#define SPRING 2.7f
-#define RISE 1.95f
-#define WALL 0.6f
-#define EAVES 5.55f
-#define RIDGE 8.9f
+#define FRONT      WALK_WALL_BACK
+#define BACK       (FRONT + 12.0f)
+#define SPRING     2.7f
+#define RISE       1.95f
+#define WALL       0.6f
+#define EAVES      5.55f
+#define RIDGE      8.9f
 
 static const Vault ROOM_VAULT = {-BAY / 2, BAY / 2, -BAY / 2, BAY / 2, SPRING, RISE, 0.3f};
 
@@ -66,8 +66,10 @@ static void add_glass(Soup *s, const Arch *a, float y0, float z, float facing, f
         Vec3 c[4] = {vec3(p.x, y0, z), vec3(q.x, y0, z), vec3(q.x, q.y, z), vec3(p.x, p.y, z)};
         Vec2 t[4];
         for (int j = 0; j < 4; j++) t[j] = vec2(0.5f + c[j].x * k * facing, c[j].y * k);
-        if (facing > 0) soup_quad(s, c[0], c[1], c[2], c[3], t[0], t[1], t[2], t[3]);
-        else soup_quad(s, c[3], c[2], c[1], c[0], t[3], t[2], t[1], t[0]);
+        if (facing > 0)
+            soup_quad(s, c[0], c[1], c[2], c[3], t[0], t[1], t[2], t[3]);
+        else
+            soup_quad(s, c[3], c[2], c[1], c[0], t[3], t[2], t[1], t[0]);
     }
 }
 
@@ -90,8 +92,8 @@ static int add_window_bay(Model *m) {
     shape_spandrel(&s, &LIGHT, 0.11f, -BAY / 2, BAY / 2, sill, top, WALL, 1, 10);
     soup_quad_box(&s, vec3(-BAY / 2, -0.1f, WALL), vec3(BAY / 2, -0.1f, WALL),
                   vec3(BAY / 2, sill, WALL), vec3(-BAY / 2, sill, WALL));
-    shape_taper_box(&s, vec3(-BAY / 2 - 0.25f, -0.1f, WALL), vec3(-BAY / 2 + 0.25f, 4.6f, WALL + 0.5f),
-                    0, 0.12f, SKIP_BACK | SKIP_BOTTOM);
+    shape_taper_box(&s, vec3(-BAY / 2 - 0.25f, -0.1f, WALL),
+                    vec3(-BAY / 2 + 0.25f, 4.6f, WALL + 0.5f), 0, 0.12f, SKIP_BACK | SKIP_BOTTOM);
     soup_use(&s, MAT_CARVED);
     shape_box(&s, vec3(-BAY / 2, 0.42f, -0.44f), vec3(BAY / 2, 0.5f, 0), SKIP_FRONT | SKIP_ENDS);
     shape_arch_moulding(&s, &LIGHT, INSIDE, 5, 10, 0, -1);
@@ -100,8 +102,9 @@ static int add_window_bay(Model *m) {
     shape_jambs(&s, &LIGHT, OUTSIDE, 3, sill);
     soup_quad_box(&s, vec3(0.7f, sill - 0.06f, -0.04f), vec3(-0.7f, sill - 0.06f, -0.04f),
                   vec3(-0.45f, sill + 0.16f, 0.32f), vec3(0.45f, sill + 0.16f, 0.32f));
-    soup_quad_box(&s, vec3(-0.57f, sill - 0.02f, WALL + 0.02f), vec3(0.57f, sill - 0.02f, WALL + 0.02f),
-                  vec3(0.45f, sill + 0.1f, 0.32f), vec3(-0.45f, sill + 0.1f, 0.32f));
+    soup_quad_box(&s, vec3(-0.57f, sill - 0.02f, WALL + 0.02f),
+                  vec3(0.57f, sill - 0.02f, WALL + 0.02f), vec3(0.45f, sill + 0.1f, 0.32f),
+                  vec3(-0.45f, sill + 0.1f, 0.32f));
     soup_use(&s, MAT_GLASS_LANCET);
     add_glass(&s, &LIGHT, sill, 0.3f, -1, 0.9f);
     add_glass(&s, &LIGHT, sill, 0.33f, 1, 0.9f);
@@ -168,15 +171,16 @@ static void add_roof(Soup *s) {
         soup_use(s, MAT_ROOF);
         float k = 1 / s->tile_m;
         soup_quad(s, vec3(over, low, z1), vec3(over, low, z0), vec3(0, RIDGE, z0),
-                  vec3(0, RIDGE, z1), vec2(-z1 * k, 0), vec2(-z0 * k, 0),
-                  vec2(-z0 * k, length * k), vec2(-z1 * k, length * k));
+                  vec3(0, RIDGE, z1), vec2(-z1 * k, 0), vec2(-z0 * k, 0), vec2(-z0 * k, length * k),
+                  vec2(-z1 * k, length * k));
         soup_use(s, MAT_WOOD);
         soup_quad_box(s, vec3(over, low - 0.08f, z0), vec3(over, low - 0.08f, z1),
                       vec3(0, RIDGE - 0.08f, z1), vec3(0, RIDGE - 0.08f, z0));
         soup_quad_box(s, vec3(over, low - 0.08f, z1), vec3(over, low - 0.08f, z0),
                       vec3(over, low, z0), vec3(over, low, z1));
         soup_use(s, MAT_ASHLAR_DARK);
-        soup_triangle_box(s, vec3(0, EAVES - 0.4f, BACK + WALL), vec3(edge, EAVES - 0.4f, BACK + WALL),
+        soup_triangle_box(s, vec3(0, EAVES - 0.4f, BACK + WALL),
+                          vec3(edge, EAVES - 0.4f, BACK + WALL),
                           vec3(0, RIDGE - 0.06f, BACK + WALL));
         soup_triangle_box(s, vec3(edge, EAVES - 0.4f, FRONT), vec3(0, EAVES - 0.4f, FRONT),
                           vec3(0, RIDGE - 0.06f, FRONT));

@@ -7,16 +7,16 @@
 #include "models.h"
 #include "walk.h"
 
-#define FRONT WALK_WALL_BACK
+#define FRONT      WALK_WALL_BACK
 #define HALF_WIDTH 5.0f
-#define EAVES 10.2f
-#define RIDGE 14.6f
-#define DEPTH 15.0f
-#define ROSE_Y 9.3f
-#define ROSE_R 2.15f
-#define TOWER_X 7.3f
+#define EAVES      10.2f
+#define RIDGE      14.6f
+#define DEPTH      15.0f
+#define ROSE_Y     9.3f
+#define ROSE_R     2.15f
+#define TOWER_X    7.3f
 #define TOWER_HALF 2.2f
-#define TOWER_TOP 17.2f
+#define TOWER_TOP  17.2f
 
 // Front wall with a round hole: a ring of quads from the circle to the outline.
 static void add_front(Soup *s) {
@@ -33,8 +33,7 @@ static void add_front(Soup *s) {
         if (lean > 0) t = fminf(t, (RIDGE - ROSE_Y) / lean);
         edge[i] = vec3(t * c, ROSE_Y + t * d, FRONT);
     }
-    for (int i = 0; i < STEPS; i++)
-        soup_quad_box(s, rim[i], rim[i + 1], edge[i + 1], edge[i]);
+    for (int i = 0; i < STEPS; i++) soup_quad_box(s, rim[i], rim[i + 1], edge[i + 1], edge[i]);
 }
 
 static void add_rose(Soup *s) {
@@ -43,13 +42,16 @@ static void add_rose(Soup *s) {
     // Lathe around the window's axis: y of the lathe points to -z, out of the wall.
     s->transform = affine_mul(&saved, &place);
     soup_use(s, MAT_CARVED);
-    Vec2 frame[9] = {{ROSE_R + 0.34f, -0.02f}, {ROSE_R + 0.34f, 0.12f}, {ROSE_R + 0.2f, 0.16f},
-                     {ROSE_R + 0.13f, 0.1f},   {ROSE_R + 0.02f, 0.1f},  {ROSE_R - 0.04f, 0.02f},
+    Vec2 frame[9] = {{ROSE_R + 0.34f, -0.02f}, {ROSE_R + 0.34f, 0.12f},  {ROSE_R + 0.2f, 0.16f},
+                     {ROSE_R + 0.13f, 0.1f},   {ROSE_R + 0.02f, 0.1f},   {ROSE_R - 0.04f, 0.02f},
                      {ROSE_R - 0.14f, -0.02f}, {ROSE_R - 0.18f, -0.16f}, {ROSE_R - 0.18f, -0.36f}};
     shape_turn(s, frame, 9, 40);
     for (int ring = 0; ring < 2; ring++) {
         float r = ROSE_R * (ring ? 0.72f : 0.2f), w = ring ? 0.06f : 0.075f;
-        Vec2 band[5] = {{r + w, -0.32f}, {r + w * 0.9f, -0.2f}, {r, -0.14f}, {r - w * 0.9f, -0.2f},
+        Vec2 band[5] = {{r + w, -0.32f},
+                        {r + w * 0.9f, -0.2f},
+                        {r, -0.14f},
+                        {r - w * 0.9f, -0.2f},
                         {r - w, -0.32f}};
         shape_turn(s, band, 5, ring ? 36 : 16);
     }
@@ -62,7 +64,8 @@ static void add_rose(Soup *s) {
         for (int k = 0; k < 2; k++) {
             float b = a + (k ? 0.13f : 0.39f);
             Affine ring = affine_turn_x(-90);
-            ring.t = vec3(0.85f * ROSE_R * cosf(b), ROSE_Y + 0.85f * ROSE_R * sinf(b), FRONT + 0.26f);
+            ring.t =
+                vec3(0.85f * ROSE_R * cosf(b), ROSE_Y + 0.85f * ROSE_R * sinf(b), FRONT + 0.26f);
             s->transform = affine_mul(&saved, &ring);
             shape_torus(s, 0.21f, 0.05f, 10, 5);
             s->transform = saved;
@@ -77,8 +80,8 @@ static void add_rose(Soup *s) {
 // A row of blind arches under the rose: colonnettes in front of a plate.
 static void add_gallery(Soup *s) {
     Arch arch = {0.36f, 6.15f, 0.4f};
-    static const Vec2 RING[4] = {{0.0f, FRONT}, {0.0f, FRONT - 0.14f}, {0.08f, FRONT - 0.16f},
-                                 {0.09f, FRONT - 0.1f}};
+    static const Vec2 RING[4] = {
+        {0.0f, FRONT}, {0.0f, FRONT - 0.14f}, {0.08f, FRONT - 0.16f}, {0.09f, FRONT - 0.1f}};
     Affine saved = s->transform;
     for (int i = 0; i < 9; i++) {
         Affine place = affine_translation(-3.6f + 0.9f * (float)i, 0, 0);
@@ -91,7 +94,7 @@ static void add_gallery(Soup *s) {
     }
     soup_use(s, MAT_CARVED);
     for (int i = 0; i < 10; i++) {
-        Vec2 shaft[6] = {{0.085f, 5.3f}, {0.085f, 5.4f}, {0.055f, 5.45f},
+        Vec2 shaft[6] = {{0.085f, 5.3f}, {0.085f, 5.4f},  {0.055f, 5.45f},
                          {0.05f, 5.92f}, {0.085f, 6.06f}, {0.085f, 6.15f}};
         Affine place = affine_translation(-4.05f + 0.9f * (float)i, 0, FRONT - 0.08f);
         s->transform = affine_mul(&saved, &place);
@@ -106,16 +109,18 @@ static void add_nave(Soup *s) {
     float back = FRONT + DEPTH, w = HALF_WIDTH;
     soup_use(s, MAT_ASHLAR_DARK);
     soup_quad_box(s, vec3(w, 0, FRONT), vec3(-w, 0, FRONT), vec3(-w, 5, FRONT), vec3(w, 5, FRONT));
-    soup_quad_box(s, vec3(w, 0, back), vec3(w, 0, FRONT), vec3(w, EAVES, FRONT), vec3(w, EAVES, back));
+    soup_quad_box(s, vec3(w, 0, back), vec3(w, 0, FRONT), vec3(w, EAVES, FRONT),
+                  vec3(w, EAVES, back));
     soup_quad_box(s, vec3(-w, 0, FRONT), vec3(-w, 0, back), vec3(-w, EAVES, back),
                   vec3(-w, EAVES, FRONT));
-    soup_quad_box(s, vec3(-w, 0, back), vec3(w, 0, back), vec3(w, EAVES, back), vec3(-w, EAVES, back));
+    soup_quad_box(s, vec3(-w, 0, back), vec3(w, 0, back), vec3(w, EAVES, back),
+                  vec3(-w, EAVES, back));
     soup_triangle_box(s, vec3(-w, EAVES, back), vec3(w, EAVES, back), vec3(0, RIDGE, back));
     for (int side = -1; side <= 1; side += 2) {
         float k = (float)side;
         // Buttresses end in pinnacles at the front's corners.
-        shape_taper_box(s, vec3(k * w - 0.55f, 0, FRONT - 0.5f), vec3(k * w + 0.55f, EAVES, FRONT + 0.5f),
-                        0.1f, 0.1f, SKIP_BOTTOM);
+        shape_taper_box(s, vec3(k * w - 0.55f, 0, FRONT - 0.5f),
+                        vec3(k * w + 0.55f, EAVES, FRONT + 0.5f), 0.1f, 0.1f, SKIP_BOTTOM);
         soup_use(s, MAT_CARVED);
         Affine saved = s->transform, place = affine_translation(k * w, 0, FRONT);
         s->transform = affine_mul(&saved, &place);
@@ -161,8 +166,8 @@ static void add_nave(Soup *s) {
 // One face of the belfry, at z = -half looking to -z: two openings with glow behind.
 static void add_belfry_face(Soup *s) {
     Arch arch = {0.55f, 14.6f, 0.35f};
-    static const Vec2 REVEAL[5] = {{0.0f, 0.5f}, {0.0f, 0.1f}, {0.08f, 0.02f}, {0.14f, -0.06f},
-                                   {0.16f, 0.02f}};
+    static const Vec2 REVEAL[5] = {
+        {0.0f, 0.5f}, {0.0f, 0.1f}, {0.08f, 0.02f}, {0.14f, -0.06f}, {0.16f, 0.02f}};
     Affine saved = s->transform;
     for (int side = -1; side <= 1; side += 2) {
         Affine place = affine_translation(0.85f * (float)side, 0, -TOWER_HALF);
@@ -171,13 +176,14 @@ static void add_belfry_face(Soup *s) {
         shape_arch_moulding(s, &arch, REVEAL, 5, 8, 0, -1);
         shape_jambs(s, &arch, REVEAL, 5, 12.6f);
         soup_use(s, MAT_ASHLAR);
-        float lo = side < 0 ? -TOWER_HALF + 0.85f : -0.85f, hi = side < 0 ? 0.85f : TOWER_HALF - 0.85f;
+        float lo = side < 0 ? -TOWER_HALF + 0.85f : -0.85f,
+              hi = side < 0 ? 0.85f : TOWER_HALF - 0.85f;
         shape_spandrel(s, &arch, 0.13f, lo, hi, 12.6f, TOWER_TOP, 0, -1, 8);
         soup_use(s, MAT_CARVED_DARK);
         for (int i = 0; i < 5; i++) { // louvres
             float y = 12.75f + 0.42f * (float)i;
-            soup_quad_box(s, vec3(0.55f, y, 0.16f), vec3(-0.55f, y, 0.16f), vec3(-0.55f, y + 0.2f, 0.45f),
-                          vec3(0.55f, y + 0.2f, 0.45f));
+            soup_quad_box(s, vec3(0.55f, y, 0.16f), vec3(-0.55f, y, 0.16f),
+                          vec3(-0.55f, y + 0.2f, 0.45f), vec3(0.55f, y + 0.2f, 0.45f));
         }
         soup_quad_box(s, vec3(0.6f, 12.6f, 0), vec3(-0.6f, 12.6f, 0), vec3(-0.6f, 12.7f, 0.5f),
                       vec3(0.6f, 12.7f, 0.5f));
@@ -197,8 +203,9 @@ static void add_tower(Soup *s) {
     soup_use(s, MAT_CARVED);
     static const float BANDS[4] = {6.6f, 9.6f, 12.4f, TOWER_TOP};
     for (int i = 0; i < 4; i++)
-        shape_taper_box(s, vec3(-h - 0.04f, BANDS[i], -h - 0.04f), vec3(h + 0.04f, BANDS[i] + 0.2f, h + 0.04f),
-                        i == 3 ? -0.2f : -0.08f, i == 3 ? -0.2f : -0.08f, 0);
+        shape_taper_box(s, vec3(-h - 0.04f, BANDS[i], -h - 0.04f),
+                        vec3(h + 0.04f, BANDS[i] + 0.2f, h + 0.04f), i == 3 ? -0.2f : -0.08f,
+                        i == 3 ? -0.2f : -0.08f, 0);
     for (int i = 0; i < 4; i++) {
         Affine turn = affine_turn_y(90.0f * (float)i);
         s->transform = affine_mul(&here, &turn);
@@ -210,22 +217,25 @@ static void add_tower(Soup *s) {
                       vec3(x + 0.1f, TOWER_TOP, -h), SKIP_FRONT | SKIP_TOP);
         }
         soup_use(s, MAT_ASHLAR);
-        shape_taper_box(s, vec3(-h - 0.25f, 0, -h - 0.25f), vec3(-h + 0.35f, 12.4f, -h + 0.35f), 0.08f,
-                        0.08f, SKIP_BOTTOM);
+        shape_taper_box(s, vec3(-h - 0.25f, 0, -h - 0.25f), vec3(-h + 0.35f, 12.4f, -h + 0.35f),
+                        0.08f, 0.08f, SKIP_BOTTOM);
         Affine corner = affine_translation(-h + 0.05f, 0, -h + 0.05f), turned = s->transform;
         s->transform = affine_mul(&turned, &corner);
         soup_use(s, MAT_CARVED);
-        Vec2 pinnacle[6] = {{0.3f, TOWER_TOP + 0.2f}, {0.3f, TOWER_TOP + 0.9f}, {0.38f, TOWER_TOP + 1},
-                            {0.36f, TOWER_TOP + 1.1f}, {0.08f, TOWER_TOP + 2.4f}, {0, TOWER_TOP + 2.5f}};
+        Vec2 pinnacle[6] = {{0.3f, TOWER_TOP + 0.2f},  {0.3f, TOWER_TOP + 0.9f},
+                            {0.38f, TOWER_TOP + 1},    {0.36f, TOWER_TOP + 1.1f},
+                            {0.08f, TOWER_TOP + 2.4f}, {0, TOWER_TOP + 2.5f}};
         shape_turn(s, pinnacle, 6, 8);
     }
     s->transform = here;
     soup_use(s, MAT_ROOF);
-    Vec2 spire[3] = {{(h - 0.05f) * 1.4142f, TOWER_TOP + 0.2f}, {(h - 0.45f) * 1.4142f, TOWER_TOP + 1.4f},
+    Vec2 spire[3] = {{(h - 0.05f) * 1.4142f, TOWER_TOP + 0.2f},
+                     {(h - 0.45f) * 1.4142f, TOWER_TOP + 1.4f},
                      {0, TOWER_TOP + 6.6f}};
     shape_lathe(s, spire, 3, 4, 45, 360);
     soup_use(s, MAT_BRASS);
-    shape_tube(s, vec3(0, TOWER_TOP + 6.4f, 0), vec3(0, TOWER_TOP + 7.8f, 0), 0.04f, 0.03f, 6, true);
+    shape_tube(s, vec3(0, TOWER_TOP + 6.4f, 0), vec3(0, TOWER_TOP + 7.8f, 0), 0.04f, 0.03f, 6,
+               true);
     shape_ball(s, vec3(0, TOWER_TOP + 6.7f, 0), vec3(0.16f, 0.16f, 0.16f), 10, 6);
     shape_box(s, vec3(-0.34f, TOWER_TOP + 7.25f, -0.03f), vec3(0.34f, TOWER_TOP + 7.33f, 0.03f), 0);
     s->transform = saved;

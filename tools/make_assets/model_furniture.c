@@ -13,9 +13,9 @@ void model_make_bench(Model *m) {
     shape_bevel_box(&s, vec3(-0.8f, 0.4f, -0.22f), vec3(0.8f, 0.49f, 0.22f), 0.02f);
     for (int side = -1; side <= 1; side += 2) {
         // Each leg is a scroll in outline, extruded over the bench's depth.
-        static const Vec2 OUTLINE[9] = {{0.1f, 0},      {0.1f, 0.06f},   {0.05f, 0.1f},
+        static const Vec2 OUTLINE[9] = {{0.1f, 0},       {0.1f, 0.06f},  {0.05f, 0.1f},
                                         {0.045f, 0.22f}, {0.09f, 0.32f}, {0.14f, 0.36f},
-                                        {0.14f, 0.4f}, {-0.1f, 0.4f},   {-0.1f, 0}};
+                                        {0.14f, 0.4f},   {-0.1f, 0.4f},  {-0.1f, 0}};
         float x = 0.55f * (float)side;
         SweepFrame frames[2] = {{vec3(x, 0, -0.18f), vec3((float)side, 0, 0), vec3(0, 1, 0)},
                                 {vec3(x, 0, 0.18f), vec3((float)side, 0, 0), vec3(0, 1, 0)}};
@@ -32,14 +32,18 @@ void model_make_bench(Model *m) {
                 Vec3 b = vec3(x + OUTLINE[j - 1].x * (float)side, OUTLINE[j - 1].y, z);
                 Vec3 c = vec3(x + OUTLINE[j].x * (float)side, OUTLINE[j].y, z);
                 bool flip = (end == 1) == (side < 0);
-                if (flip) soup_triangle_box(&s, a, c, b);
-                else soup_triangle_box(&s, a, b, c);
+                if (flip)
+                    soup_triangle_box(&s, a, c, b);
+                else
+                    soup_triangle_box(&s, a, b, c);
             }
             Vec3 a = vec3(x - 0.1f * (float)side, 0, z);
             Vec3 b = vec3(x + 0.14f * (float)side, 0.4f, z);
             Vec3 c = vec3(x - 0.1f * (float)side, 0.4f, z);
-            if ((end == 1) == (side < 0)) soup_triangle_box(&s, a, c, b);
-            else soup_triangle_box(&s, a, b, c);
+            if ((end == 1) == (side < 0))
+                soup_triangle_box(&s, a, c, b);
+            else
+                soup_triangle_box(&s, a, b, c);
         }
     }
     model_add_soup(m, "bench", &s);
@@ -121,16 +125,16 @@ void model_make_statue(Model *m) {
     for (int side = -1; side <= 1; side += 2) {
         float k = (float)side;
         // Sleeves meet in front of the breast and hold a bowl of light.
-        shape_tube(&s, vec3(0.27f * k, 1.36f, 0.0f), vec3(0.31f * k, 1.08f, 0.1f), 0.075f, 0.085f, 9,
-                   true);
+        shape_tube(&s, vec3(0.27f * k, 1.36f, 0.0f), vec3(0.31f * k, 1.08f, 0.1f), 0.075f, 0.085f,
+                   9, true);
         shape_ball(&s, vec3(0.31f * k, 1.08f, 0.1f), vec3(0.088f, 0.088f, 0.088f), 9, 6);
         shape_tube(&s, vec3(0.31f * k, 1.07f, 0.1f), vec3(0.08f * k, 1.12f, 0.31f), 0.08f, 0.1f, 9,
                    true);
-        shape_tube(&s, vec3(0.09f * k, 1.115f, 0.3f), vec3(0.03f * k, 1.14f, 0.36f), 0.04f, 0.03f, 7,
-                   true);
+        shape_tube(&s, vec3(0.09f * k, 1.115f, 0.3f), vec3(0.03f * k, 1.14f, 0.36f), 0.04f, 0.03f,
+                   7, true);
     }
-    Vec2 bowl[6] = {{0.03f, 1.13f}, {0.08f, 1.15f}, {0.115f, 1.2f}, {0.12f, 1.24f}, {0.1f, 1.24f},
-                    {0, 1.2f}};
+    Vec2 bowl[6] = {{0.03f, 1.13f}, {0.08f, 1.15f}, {0.115f, 1.2f},
+                    {0.12f, 1.24f}, {0.1f, 1.24f},  {0, 1.2f}};
     Affine saved = s.transform, place = affine_translation(0, 0, 0.37f);
     s.transform = affine_mul(&saved, &place);
     shape_turn(&s, bowl, 6, 12);
@@ -183,7 +187,8 @@ void model_make_door_leaf(Model *m) {
         s.transform = affine_mul(&saved, &place);
         shape_torus(&s, 0.075f, 0.012f, 14, 6);
         s.transform = saved;
-        shape_ball(&s, vec3(1.06f, 1.16f, 0.055f * (float)face), vec3(0.035f, 0.035f, 0.025f), 8, 5);
+        shape_ball(&s, vec3(1.06f, 1.16f, 0.055f * (float)face), vec3(0.035f, 0.035f, 0.025f), 8,
+                   5);
     }
     model_add_soup(m, "door_leaf", &s);
 }

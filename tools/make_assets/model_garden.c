@@ -6,11 +6,11 @@
 #include "models.h"
 #include "noise.h"
 
-#define COURT 12.0f     // half the court
-#define PATH 1.5f       // half the width of the cross
-#define RING 4.5f       // radius of the round place in the middle
-#define OUTER 10.4f     // where a quarter ends before the arcade
-#define BED_CENTER 6.6f // of the round bed, both coordinates
+#define COURT      12.0f // half the court
+#define PATH       1.5f  // half the width of the cross
+#define RING       4.5f  // radius of the round place in the middle
+#define OUTER      10.4f // where a quarter ends before the arcade
+#define BED_CENTER 6.6f  // of the round bed, both coordinates
 #define BED_RADIUS 1.25f
 
 // Border of a quarter for u in 0..1: v = 0 on the round place, v = 1 on the two outer sides.
@@ -68,7 +68,7 @@ static void add_kerb(Soup *s) {
         float miter = 1 / fmaxf(0.5f, vec3_dot(o, o1));
         frames[i] = (SweepFrame){path[i], vec3_scale(o, miter), vec3(0, 1, 0)};
     }
-    static const Vec2 PROFILE[6] = {{0.08f, 0},     {0.08f, 0.09f},  {0.055f, 0.115f},
+    static const Vec2 PROFILE[6] = {{0.08f, 0},       {0.08f, 0.09f},   {0.055f, 0.115f},
                                     {-0.05f, 0.115f}, {-0.075f, 0.09f}, {-0.075f, 0}};
     soup_use(s, MAT_CARVED_DARK);
     shape_sweep(s, frames, n, PROFILE, 6, false);
@@ -93,7 +93,7 @@ static void add_hedge(Soup *s, const Vec3 *points, int count, float half, float 
             frames[n++] = (SweepFrame){p, vec3_scale(o, miter * wide), vec3(0, tall, 0)};
         }
     }
-    static const Vec2 PROFILE[6] = {{0.92f, 0},      {1, 0.8f},   {0.72f, 1},
+    static const Vec2 PROFILE[6] = {{0.92f, 0},  {1, 0.8f},  {0.72f, 1},
                                     {-0.72f, 1}, {-1, 0.8f}, {-0.92f, 0}};
     soup_use(s, MAT_HEDGE);
     for (int i = 0; i + 1 < n; i++) {
@@ -116,15 +116,28 @@ static void add_hedge(Soup *s, const Vec3 *points, int count, float half, float 
                 Vec2 q = PROFILE[index[c]];
                 p[c] = vec3_mad(vec3_mad(f->origin, f->a, q.x), f->b, q.y);
             }
-            if (end) soup_triangle_box(s, p[0], p[1], p[2]);
-            else soup_triangle_box(s, p[2], p[1], p[0]);
+            if (end)
+                soup_triangle_box(s, p[0], p[1], p[2]);
+            else
+                soup_triangle_box(s, p[2], p[1], p[0]);
         }
     }
 }
 
+// A ball of box, dented like the hedges.
+static Vec3 topiary_point(const void *context, float u, float v) {
+    const float *ball = context; // x, z, radius
+    float angle = u * 2 * PI_F, lat = (v - 0.5f) * PI_F;
+    Vec3 d = vec3(cosf(angle) * cosf(lat), sinf(lat), -sinf(angle) * cosf(lat));
+    float dent = noise_value3(d.x * 2.6f + ball[0] + 40, d.y * 2.6f + 40, d.z * 2.6f + 40, 9);
+    float r = ball[2] * (0.9f + 0.2f * dent);
+    return vec3(ball[0] + d.x * r, 0.55f + ball[2] * 0.75f + d.y * r, ball[1] + d.z * r);
+}
+
 static void add_topiary(Soup *s, float x, float z, float radius) {
+    float ball[3] = {x, z, radius};
     soup_use(s, MAT_HEDGE);
-    shape_ball(s, vec3(x, 0.55f + radius * 0.75f, z), vec3(radius, radius, radius), 12, 8);
+    shape_surface(s, topiary_point, ball, 16, 10, vec2(3, 2));
 }
 
 static void add_bed(Soup *s) {

@@ -44,7 +44,7 @@ static void add_lantern(Soup *s) {
     shape_turn(s, foot, 5, 6);
     Vec2 lid[2] = {{0.1f, -0.13f}, {0, -0.13f}};
     shape_turn(s, lid, 2, 6);
-    Vec2 roof[7] = {{0.0f, 0.11f},  {0.15f, 0.11f}, {0.15f, 0.13f}, {0.09f, 0.2f},
+    Vec2 roof[7] = {{0.0f, 0.11f},   {0.15f, 0.11f},  {0.15f, 0.13f}, {0.09f, 0.2f},
                     {0.045f, 0.23f}, {0.045f, 0.27f}, {0, 0.3f}};
     shape_turn(s, roof, 7, 6);
 }
@@ -56,8 +56,9 @@ void model_make_lantern_post(Model *m) {
     soup_use(&s, MAT_CARVED_DARK);
     shape_taper_box(&s, vec3(-0.2f, 0, -0.2f), vec3(0.2f, 0.22f, 0.2f), 0.05f, 0.05f, SKIP_BOTTOM);
     soup_use(&s, MAT_IRON);
-    Vec2 post[9] = {{0.09f, 0.22f},  {0.09f, 0.28f}, {0.05f, 0.34f},  {0.035f, 0.9f}, {0.055f, 0.93f},
-                    {0.035f, 0.97f}, {0.03f, 1.74f}, {0.06f, 1.8f}, {0.05f, 1.86f}};
+    Vec2 post[9] = {{0.09f, 0.22f}, {0.09f, 0.28f},  {0.05f, 0.34f},
+                    {0.035f, 0.9f}, {0.055f, 0.93f}, {0.035f, 0.97f},
+                    {0.03f, 1.74f}, {0.06f, 1.8f},   {0.05f, 1.86f}};
     shape_turn(&s, post, 9, 8);
     for (int i = 0; i < 4; i++) { // scrolls under the lantern
         float a = (float)i * PI_F / 2 + PI_F / 4;
@@ -77,12 +78,12 @@ void model_make_lantern_hanging(Model *m) {
     soup_init(&s);
     add_lantern(&s);
     soup_use(&s, MAT_IRON);
-    for (int i = 0; i < 10; i++) {
+    for (int i = 0; i < 8; i++) {
         Affine stand = affine_turn_x(90), turn = affine_turn_y(i % 2 ? 90.0f : 0.0f);
-        Affine long_link = affine_scaling(0.72f, 1, 1.55f);
+        Affine long_link = affine_scaling(0.66f, 1, 1.9f);
         s.transform = affine_mul(&turn, &stand);
         s.transform = affine_mul(&s.transform, &long_link);
-        s.transform.t = vec3(0, 0.34f + 0.087f * (float)i, 0);
+        s.transform.t = vec3(0, 0.345f + 0.108f * (float)i, 0);
         shape_torus(&s, 0.034f, 0.008f, 6, 3);
     }
     model_add_soup(m, "lantern_hanging", &s);
@@ -173,9 +174,9 @@ void model_make_candle(Model *m) {
     Soup s;
     soup_init(&s);
     soup_use(&s, MAT_BRASS);
-    Vec2 dish[6] = {{0, 0}, {0.06f, 0.002f}, {0.075f, 0.016f}, {0.07f, 0.016f}, {0.05f, 0.008f},
-                    {0, 0.008f}};
-    shape_turn(&s, dish, 6, 12);
+    Vec2 dish[6] = {{0, 0},          {0.06f, 0.002f}, {0.075f, 0.016f},
+                    {0.07f, 0.016f}, {0.05f, 0.008f}, {0, 0.008f}};
+    shape_turn(&s, dish, 6, 9);
     add_candle(&s, vec3(0, 0.006f, 0), 0.15f, 0.022f);
     model_add_soup(m, "candle", &s);
 }
@@ -185,13 +186,14 @@ void model_make_candles(Model *m) {
     Soup s;
     soup_init(&s);
     soup_use(&s, MAT_IRON);
-    Vec2 stem[7] = {{0.17f, 0}, {0.16f, 0.03f}, {0.03f, 0.07f}, {0.022f, 0.6f}, {0.04f, 0.63f},
-                    {0.022f, 0.66f}, {0.018f, 1.1f}};
+    Vec2 stem[7] = {{0.17f, 0},     {0.16f, 0.03f},  {0.03f, 0.07f}, {0.022f, 0.6f},
+                    {0.04f, 0.63f}, {0.022f, 0.66f}, {0.018f, 1.1f}};
     shape_turn(&s, stem, 7, 9);
     for (int i = 0; i < 7; i++) {
         float a = (float)i * PI_F / 3, r = i < 6 ? 0.22f : 0;
         Vec3 top = vec3(r * cosf(a), i < 6 ? 1.16f : 1.24f, r * sinf(a));
-        shape_tube(&s, vec3(0, 1.02f, 0), vec3_sub(top, vec3(0, 0.01f, 0)), 0.011f, 0.011f, 5, false);
+        shape_tube(&s, vec3(0, 1.02f, 0), vec3_sub(top, vec3(0, 0.01f, 0)), 0.011f, 0.011f, 5,
+                   false);
         Affine place = affine_translation(top.x, top.y, top.z);
         s.transform = place;
         soup_use(&s, MAT_BRASS);

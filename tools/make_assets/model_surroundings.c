@@ -6,8 +6,8 @@
 #include "models.h"
 #include "noise.h"
 
-#define INNER 16.3f // just inside the outer walls' outer faces
-#define FAR_HILLS 118.0f
+#define INNER       16.3f // just inside the outer walls' outer faces
+#define FAR_HILLS   118.0f
 #define LAND_AROUND 64
 #define LAND_ACROSS 9
 
@@ -26,7 +26,8 @@ static Vec3 land_point(float u, float v) {
     float r = float_lerp(square, FAR_HILLS, v * v);
     float rise = float_smooth(0.35f, 1.0f, v);
     float y = -0.06f + rise * (3 + 20 * hill_height(angle, 11)) +
-              float_smooth(0.3f, 0.6f, v) * 2.5f * (noise_value3(r * c * 0.08f + 50, 1, r * d * 0.08f + 50, 64) - 0.4f);
+              float_smooth(0.3f, 0.6f, v) * 2.5f *
+                  (noise_value3(r * c * 0.08f + 50, 1, r * d * 0.08f + 50, 64) - 0.4f);
     return vec3(r * c, y, -r * d);
 }
 
@@ -47,8 +48,9 @@ static void add_land(Soup *s) {
 // A second, lower-detail range in front of the far one: cones of dark trees.
 static void add_far_trees(Soup *s) {
     soup_use(s, MAT_HILL);
-    for (int i = 0; i < 90; i++) {
-        // On the land's own vertices, since between them the land is flat and would let trees float.
+    for (int i = 0; i < 110; i++) {
+        // On the land's own vertices, since between them the land is flat and would let trees
+        // float.
         float u = floorf(noise_random((uint32_t)i, 1, 65) * LAND_AROUND) / LAND_AROUND;
         float v = floorf(5 + 3 * noise_random((uint32_t)i, 2, 65)) / LAND_ACROSS;
         Vec3 p = land_point(u, v);
@@ -59,7 +61,7 @@ static void add_far_trees(Soup *s) {
         }
         Affine place = affine_translation(p.x, p.y - 0.4f, p.z);
         s->transform = place;
-        Vec2 crown[4] = {{r * 0.7f, 0}, {r, h * 0.3f}, {r * 0.7f, h * 0.65f}, {0, h}};
+        Vec2 crown[4] = {{r, -1}, {r, h * 0.25f}, {r * 0.72f, h * 0.6f}, {0, h}};
         shape_turn(s, crown, 4, 6);
     }
     s->transform = affine_identity();

@@ -9,8 +9,8 @@
 
 #define HALF (WALK_BAY / 2)
 
-static const Vault BAY_VAULT = {-HALF, HALF, WALK_ARCADE, WALK_DEPTH, WALK_SPRING, WALK_RISE,
-                                WALK_POINTED};
+static const Vault BAY_VAULT = {-HALF,       HALF,      WALK_ARCADE, WALK_DEPTH,
+                                WALK_SPRING, WALK_RISE, WALK_POINTED};
 
 static void add_floor(Soup *s, float x0, float z0, float x1, float z1, int material) {
     soup_use(s, material);
@@ -19,9 +19,9 @@ static void add_floor(Soup *s, float x0, float z0, float x1, float z1, int mater
 
 static void add_vault(Soup *s, const Vault *v) {
     soup_use(s, MAT_VAULT);
-    carve_vault_webs(s, v, 10);
+    carve_vault_webs(s, v, 8);
     soup_use(s, MAT_CARVED);
-    carve_vault_diagonals(s, v, 0.15f, 0.16f, 12);
+    carve_vault_diagonals(s, v, 0.15f, 0.16f, 10);
 }
 
 // A pier of the arcade with its buttress towards the garden and a shaft towards the walk.
@@ -38,8 +38,10 @@ static void add_pier(Soup *s) {
     for (int side = -1; side <= 1; side += 2) {
         Vec3 a = vec3(x + 0.2f * (float)side, 2.72f, -0.34f);
         Vec3 b = vec3(a.x, 2.72f, 0.04f), c = vec3(a.x, 3.25f, 0.04f);
-        if (side > 0) soup_triangle_box(s, b, a, c);
-        else soup_triangle_box(s, a, b, c);
+        if (side > 0)
+            soup_triangle_box(s, b, a, c);
+        else
+            soup_triangle_box(s, a, b, c);
     }
     soup_quad_box(s, vec3(x - 0.2f, 2.72f, -0.34f), vec3(x + 0.2f, 2.72f, -0.34f),
                   vec3(x + 0.2f, 2.72f, 0.04f), vec3(x - 0.2f, 2.72f, 0.04f));
@@ -48,21 +50,20 @@ static void add_pier(Soup *s) {
     shape_taper_box(s, vec3(x - 0.3f, 2.18f, -0.05f), vec3(x + 0.3f, 2.3f, 0.55f), 0.0f, 0.0f, 0);
     carve_wall_shaft(s, vec3(x, 0, 0.48f), WALK_SPRING, 0.09f, 180, 180);
     carve_wall_shaft(s, vec3(x, 0, WALK_DEPTH + 0.02f), WALK_SPRING, 0.1f, 0, 180);
-    carve_vault_rib_z(s, &BAY_VAULT, x, 0.3f, 0.14f, 12);
+    carve_vault_rib_z(s, &BAY_VAULT, x, 0.3f, 0.14f, 10);
 }
 
 // The arch ring over both faces of the arcade wall, stones in two colours.
 static void add_arch_ring(Soup *s, const Arch *a, int segments, int stones) {
-    static const Vec2 PROFILE[8] = {{0.19f, 0.46f},  {0.19f, 0.49f},  {0.09f, 0.49f},
-                                    {0.0f, 0.41f},   {0.0f, 0.09f},   {0.09f, 0.01f},
-                                    {0.19f, 0.01f},  {0.19f, 0.04f}};
+    static const Vec2 PROFILE[8] = {{0.19f, 0.46f}, {0.19f, 0.49f}, {0.09f, 0.49f}, {0.0f, 0.41f},
+                                    {0.0f, 0.09f},  {0.09f, 0.01f}, {0.19f, 0.01f}, {0.19f, 0.04f}};
     soup_use(s, MAT_CARVED);
     shape_arch_moulding(s, a, PROFILE, 8, segments, stones, MAT_CARVED_RED);
 }
 
 static void add_spandrels(Soup *s, const Arch *a, float x_lo, float x_hi, int segments) {
     soup_use(s, MAT_ASHLAR);
-    shape_spandrel(s, a, 0.15f, x_lo, x_hi, 2.3f, walk_roof_y(0.03f) + 0.02f, 0.03f, -1, segments);
+    shape_spandrel(s, a, 0.15f, x_lo, x_hi, 2.3f, walk_roof_y(0.03f) - 0.03f, 0.03f, -1, segments);
     shape_spandrel(s, a, 0.15f, x_lo, x_hi, 2.3f, 4.0f, WALK_ARCADE, 1, segments);
 }
 
@@ -119,6 +120,9 @@ static void add_roof(Soup *s, float x0, float x1) {
         Vec3 front[4];
         for (int j = 0; j < 4; j++) front[j] = vec3(x + arc[j].x, fy + arc[j].y, front_z);
         soup_quad_box(s, front[3], front[0], front[1], front[2]);
+        Vec3 back_r = vec3(front[3].x, by - 0.012f, back_z);
+        Vec3 back_l = vec3(front[0].x, by - 0.012f, back_z);
+        soup_quad_box(s, front[0], front[3], back_r, back_l);
     }
 }
 
@@ -156,8 +160,10 @@ void model_make_bay(Model *m) {
         float center = 0.71f * (float)side;
         s.transform = affine_translation(center, 0, 0);
         add_arch_ring(&s, &arch, 10, 10);
-        if (side < 0) add_spandrels(&s, &arch, -HALF - center, -center, 10);
-        else add_spandrels(&s, &arch, -center, HALF - center, 10);
+        if (side < 0)
+            add_spandrels(&s, &arch, -HALF - center, -center, 10);
+        else
+            add_spandrels(&s, &arch, -center, HALF - center, 10);
     }
     s.transform = affine_identity();
     soup_use(&s, MAT_CARVED);
@@ -178,7 +184,7 @@ void model_make_bay_open(Model *m) {
     Arch arch = {0.98f, 2.0f, 0.24f};
     add_arch_ring(&s, &arch, 16, 17);
     soup_use(&s, MAT_ASHLAR);
-    shape_spandrel(&s, &arch, 0.15f, -HALF, HALF, 2.0f, walk_roof_y(0.03f) + 0.02f, 0.03f, -1, 16);
+    shape_spandrel(&s, &arch, 0.15f, -HALF, HALF, 2.0f, walk_roof_y(0.03f) - 0.03f, 0.03f, -1, 16);
     shape_spandrel(&s, &arch, 0.15f, -HALF, HALF, 2.0f, 4.0f, WALK_ARCADE, 1, 16);
     for (int side = -1; side <= 1; side += 2) {
         float x = (float)side;
@@ -187,8 +193,8 @@ void model_make_bay_open(Model *m) {
         Vec3 hi = vec3(fmaxf(x * 1.2f, x * 1.5f), 2.0f, WALK_ARCADE);
         shape_box(&s, lo, hi, SKIP_BOTTOM | SKIP_TOP);
         soup_use(&s, MAT_CARVED);
-        shape_bevel_box(&s, vec3(x * 1.1f - 0.16f, -0.02f, 0.0f), vec3(x * 1.1f + 0.16f, 0.3f, 0.5f),
-                        0.03f);
+        shape_bevel_box(&s, vec3(x * 1.1f - 0.16f, -0.02f, 0.0f),
+                        vec3(x * 1.1f + 0.16f, 0.3f, 0.5f), 0.03f);
         carve_column(&s, vec3(x * 1.09f, 0.3f, 0.13f), 1.9f, 0.075f, 1.5f * x);
         carve_column(&s, vec3(x * 1.09f, 0.3f, 0.37f), 1.9f, 0.075f, 0);
         shape_taper_box(&s, vec3(x * 1.12f - 0.15f, 1.89f, 0.01f),
@@ -255,15 +261,15 @@ void model_make_corner(Model *m) {
     soup_init(&s);
     add_floor(&s, 0, 0.5f, WALK_DEPTH, WALK_DEPTH, MAT_FLOOR);
     add_floor(&s, 0.5f, 0, WALK_DEPTH, 0.5f, MAT_FLOOR);
-    Vault vault = {WALK_ARCADE, WALK_DEPTH, WALK_ARCADE, WALK_DEPTH, WALK_SPRING, WALK_RISE,
-                   WALK_POINTED};
+    Vault vault = {WALK_ARCADE, WALK_DEPTH, WALK_ARCADE, WALK_DEPTH,
+                   WALK_SPRING, WALK_RISE,  WALK_POINTED};
     add_vault(&s, &vault);
     // Broad arches bridge the pier's thickness between this vault and those of the bays.
     carve_vault_rib_z(&s, &vault, 0.2f, 0.62f, 0.15f, 12);
     carve_vault_rib_x(&s, &vault, 0.2f, 0.62f, 0.15f, 12);
     soup_use(&s, MAT_ASHLAR);
     shape_bevel_box(&s, vec3(-0.3f, -0.05f, -0.3f), vec3(0.5f, 3.75f, 0.5f), 0.05f);
-    shape_box(&s, vec3(0, 3.5f, 0), vec3(0.5f, 4.2f, 0.5f), SKIP_BOTTOM);
+    shape_box(&s, vec3(0, 3.5f, 0), vec3(0.5f, 3.84f, 0.5f), SKIP_BOTTOM);
     soup_use(&s, MAT_CARVED);
     shape_taper_box(&s, vec3(-0.38f, 0, -0.38f), vec3(0.54f, 0.5f, 0.54f), 0.05f, 0.05f,
                     SKIP_BOTTOM);

@@ -45,7 +45,7 @@ void model_make_wall(Model *m) {
     add_outside(&s, false);
     add_seat(&s);
     Arch arch = {0.9f, 1.75f, 0.34f};
-    static const Vec2 RING[7] = {{0.0f, 4.24f},   {0.0f, 4.06f},  {0.05f, 3.99f}, {0.07f, 3.94f},
+    static const Vec2 RING[7] = {{0.0f, 4.24f},  {0.0f, 4.06f},  {0.05f, 3.99f}, {0.07f, 3.94f},
                                  {0.13f, 3.93f}, {0.16f, 3.96f}, {0.16f, 4.02f}};
     soup_use(&s, MAT_CARVED);
     shape_arch_moulding(&s, &arch, RING, 7, 12, 0, -1);
@@ -82,7 +82,8 @@ void model_make_wall_window(Model *m) {
         soup_use(&s, MAT_GLASS_LANCET);
         float k = 0.72f; // one repeat over the light's width
         for (int i = 0; i < 10; i++) {
-            Vec2 p = arch_point(&lancet, 0, (float)i / 10), q = arch_point(&lancet, 0, (float)(i + 1) / 10);
+            Vec2 p = arch_point(&lancet, 0, (float)i / 10),
+                 q = arch_point(&lancet, 0, (float)(i + 1) / 10);
             soup_quad(&s, vec3(q.x, 1.2f, 4.3f), vec3(p.x, 1.2f, 4.3f), vec3(p.x, p.y, 4.3f),
                       vec3(q.x, q.y, 4.3f), vec2(0.5f - q.x / k, 1.2f / k),
                       vec2(0.5f - p.x / k, 1.2f / k), vec2(0.5f - p.x / k, p.y / k),
@@ -107,10 +108,9 @@ void model_make_wall_door(Model *m) {
     add_outside(&s, true);
     Arch arch = {1.2f, 2.12f, 0.14f};
     // Splayed orders: roll, hollow, roll; the innermost stands behind the leaves' arc.
-    static const Vec2 ORDERS[10] = {{0.0f, 4.32f},   {0.0f, 4.24f},   {0.035f, 4.2f},
-                                    {0.05f, 4.16f},  {0.04f, 4.12f},  {0.09f, 4.07f},
-                                    {0.11f, 4.0f},   {0.13f, 3.94f},  {0.19f, 3.94f},
-                                    {0.2f, 4.02f}};
+    static const Vec2 ORDERS[10] = {{0.0f, 4.32f},  {0.0f, 4.24f},  {0.035f, 4.2f}, {0.05f, 4.16f},
+                                    {0.04f, 4.12f}, {0.09f, 4.07f}, {0.11f, 4.0f},  {0.13f, 3.94f},
+                                    {0.19f, 3.94f}, {0.2f, 4.02f}};
     soup_use(&s, MAT_CARVED);
     shape_arch_moulding(&s, &arch, ORDERS, 10, 16, 15, MAT_CARVED_RED);
     shape_jambs(&s, &arch, ORDERS, 10, 0);
@@ -132,7 +132,8 @@ void model_make_wall_door(Model *m) {
         float yp = fmaxf(p.y, h), yq = fmaxf(q.y, h);
         soup_quad_box(&s, vec3(q.x, h, z0), vec3(p.x, h, z0), vec3(p.x, yp, z0), vec3(q.x, yq, z0));
     }
-    shape_box(&s, vec3(-x, h - 0.01f, 4.22f), vec3(x, h + 0.1f, z0 + 0.02f), SKIP_ENDS | SKIP_FRONT);
+    shape_box(&s, vec3(-x, h - 0.01f, 4.22f), vec3(x, h + 0.1f, z0 + 0.02f),
+              SKIP_ENDS | SKIP_FRONT);
     carve_rosette(&s, vec3(0, 3.2f, z0), 0.24f, 0.08f, 8, -1);
     carve_rosette(&s, vec3(-0.48f, 3.06f, z0), 0.13f, 0.06f, 6, -1);
     carve_rosette(&s, vec3(0.48f, 3.06f, z0), 0.13f, 0.06f, 6, -1);

@@ -51,7 +51,8 @@ void paint_glass_lancet(Canvas *c) {
             float lead, side = fminf(u, 1 - u);
             Vec3 glass;
             float my = v * 2 - floorf(v * 2) - 0.5f; // two medallions a repeat
-            float r = sqrtf((u - 0.5f) * (u - 0.5f) + my * my * 0.25f), a = atan2f(my * 0.5f, u - 0.5f);
+            float r = sqrtf((u - 0.5f) * (u - 0.5f) + my * my * 0.25f),
+                  a = atan2f(my * 0.5f, u - 0.5f);
             if (side < 0.11f) {
                 float p = v * 16;
                 uint32_t id = (uint32_t)p;
@@ -64,14 +65,15 @@ void paint_glass_lancet(Canvas *c) {
                 float ring = r > 0.2f ? 1 : (r > 0.085f ? 2 : 3);
                 lead = fminf(fabsf(r - 0.2f), fminf(fabsf(r - 0.085f), 0.30f - r));
                 if (r > 0.085f) lead = fminf(lead, fminf(f, 1 - f) * r * 0.78f);
-                glass = ring == 3 ? rgb255(236, 190, 90)
-                                  : (ring == 1 ? (id % 2 ? rgb255(30, 70, 200) : rgb255(40, 130, 200))
-                                               : jewel(id, 203));
+                glass = ring == 3
+                            ? rgb255(236, 190, 90)
+                            : (ring == 1 ? (id % 2 ? rgb255(30, 70, 200) : rgb255(40, 130, 200))
+                                         : jewel(id, 203));
             } else {
                 float p = (u + v * 0.5f) * 8, q = (u - v * 0.5f) * 8;
                 float fp = p - floorf(p), fq = q - floorf(q);
-                uint32_t id = (uint32_t)((int)floorf(p) + 64) % 4 * 8 +
-                              (uint32_t)((int)floorf(q) + 64) % 4;
+                uint32_t id =
+                    (uint32_t)((int)floorf(p) + 64) % 4 * 8 + (uint32_t)((int)floorf(q) + 64) % 4;
                 lead = fminf(fminf(fminf(fp, 1 - fp), fminf(fq, 1 - fq)) / 9,
                              fminf(r - 0.30f, side - 0.11f));
                 glass = noise_hash(id, 4, 204) % 5 ? rgb255(26, 52, 150) : rgb255(38, 112, 108);
@@ -90,7 +92,8 @@ void paint_glass_rose(Canvas *c) {
     int n = c->size;
     for (int y = 0; y < n; y++) {
         for (int x = 0; x < n; x++) {
-            float px = ((float)x + 0.5f) / (float)n * 2 - 1, py = 1 - ((float)y + 0.5f) / (float)n * 2;
+            float px = ((float)x + 0.5f) / (float)n * 2 - 1,
+                  py = 1 - ((float)y + 0.5f) / (float)n * 2;
             float r = sqrtf(px * px + py * py), a = atan2f(py, px) / (2 * PI_F) + 0.5f;
             float streak = noise_fbm((float)x / (float)n, (float)y / (float)n, 40, 3, 0.6f, 211);
             float sector = a * 12, f = sector - floorf(sector) - 0.5f;
@@ -114,7 +117,8 @@ void paint_glass_rose(Canvas *c) {
                                   : (kind == 1 ? rgb255(198, 30, 48) : rgb255(120, 44, 172));
                 if (band == 1 || band == 3)
                     glass = half ? rgb255(238, 168, 50) : rgb255(36, 150, 150);
-                glass = vec3_scale(glass, 0.8f + 0.35f * noise_random(petal * 8 + (uint32_t)band, 3, 212));
+                glass = vec3_scale(glass,
+                                   0.8f + 0.35f * noise_random(petal * 8 + (uint32_t)band, 3, 212));
             } else {
                 float s = a * 24, fs = s - floorf(s) - 0.5f;
                 float q = sqrtf((r - 0.85f) * (r - 0.85f) + fs * fs * 0.05f);
@@ -157,8 +161,10 @@ void paint_tapestry(Canvas *c) {
                     float ka = (float)k * 2.399f, kr = 0.042f * sqrtf((float)k + 0.5f);
                     float dx = u - 0.5f - kr * cosf(ka), dy = v - 0.55f - kr * sinf(ka);
                     float d = sqrtf(dx * dx + dy * dy);
-                    if (d < 0.027f) col = k % 4 == 0 ? rgb255(150, 34, 34) : rgb255(60, 98, 52);
-                    else if (d < 0.033f) col = gold;
+                    if (d < 0.027f)
+                        col = k % 4 == 0 ? rgb255(150, 34, 34) : rgb255(60, 98, 52);
+                    else if (d < 0.033f)
+                        col = gold;
                 }
                 float m = sqrtf((u - 0.5f) * (u - 0.5f) + (v - 0.81f) * (v - 0.81f));
                 float cut = sqrtf((u - 0.53f) * (u - 0.53f) + (v - 0.825f) * (v - 0.825f));

@@ -40,8 +40,16 @@ void paint_grass(Canvas *c) {
         float x = pick(i, 1, 105) * (float)n, y = pick(i, 2, 105) * (float)n;
         float turn = pick(i, 3, 105) * 6.28f;
         for (int k = 0; k < 3; k++) {
-            LeafBrush leaf = {x, y, turn + (float)k * 2.094f, 7, 6, 0, 0.02f, 0.004f,
-                              rgb255(58, 84, 44), rgb255(80, 110, 62)};
+            LeafBrush leaf = {x,
+                              y,
+                              turn + (float)k * 2.094f,
+                              7,
+                              6,
+                              0,
+                              0.02f,
+                              0.004f,
+                              rgb255(58, 84, 44),
+                              rgb255(80, 110, 62)};
             canvas_leaf(c, &leaf, true);
         }
     }
@@ -108,8 +116,8 @@ void paint_wood(Canvas *c) {
             float ring = (px - 0.5f + 0.35f * shift + wander * 0.5f + knot * 0.8f) * 11;
             float grain = 0.5f + 0.5f * sinf(ring * 2 * PI_F + wander * 8);
             float fiber = noise_fbm_stretched(u, v, 110, 5, 3, 0.6f, 133);
-            float crack = float_smooth(0.42f, 0.6f,
-                                       noise_fbm_stretched(u + 0.002f * fiber, v, 36, 2, 2, 0.5f, 134));
+            float crack = float_smooth(
+                0.42f, 0.6f, noise_fbm_stretched(u + 0.002f * fiber, v, 36, 2, 2, 0.5f, 134));
             Vec3 wood = vec3_lerp(rgb255(120, 84, 54), rgb255(82, 54, 34), grain);
             wood = vec3_scale(wood, (0.72f + 0.35f * tone) * (1 + 0.16f * fiber));
             wood = vec3_lerp(wood, rgb255(44, 28, 18), knot * 0.75f);
@@ -151,8 +159,16 @@ static void lobed_leaf(Canvas *c, float x, float y, float angle, float length, f
                        Vec3 root, Vec3 end, float spread) {
     for (int k = -2; k <= 2; k++) {
         float part = k == 0 ? 1.0f : (k == 1 || k == -1 ? 0.8f : 0.55f);
-        LeafBrush lobe = {x,      y,       angle + (float)k * spread, length * part, length * 0.5f * part,
-                          0.5f,   height,  0.004f,                    root,          end};
+        LeafBrush lobe = {x,
+                          y,
+                          angle + (float)k * spread,
+                          length * part,
+                          length * 0.5f * part,
+                          0.5f,
+                          height,
+                          0.004f,
+                          root,
+                          end};
         canvas_leaf(c, &lobe, false);
     }
 }
@@ -163,8 +179,15 @@ void paint_leaf_rose(Canvas *c) {
         float a = pick(i, 1, 151) * 2 * PI_F, r = 0.37f * sqrtf(pick(i, 2, 151));
         float tone = 0.6f + 0.55f * pick(i, 3, 151), h = 0.02f * pick(i, 4, 151);
         float x = n * (0.5f + r * cosf(a)), y = n * (0.5f + r * sinf(a));
-        LeafBrush leaf = {x, y, a + (pick(i, 5, 151) - 0.5f) * 2.2f, 20 + 8 * pick(i, 6, 151),
-                          13, 0.35f, h, 0.005f, vec3_scale(rgb255(40, 66, 34), tone),
+        LeafBrush leaf = {x,
+                          y,
+                          a + (pick(i, 5, 151) - 0.5f) * 2.2f,
+                          20 + 8 * pick(i, 6, 151),
+                          13,
+                          0.35f,
+                          h,
+                          0.005f,
+                          vec3_scale(rgb255(40, 66, 34), tone),
                           vec3_scale(rgb255(74, 104, 52), tone)};
         canvas_leaf(c, &leaf, false);
     }
@@ -176,8 +199,15 @@ void paint_leaf_rose(Canvas *c) {
         for (int ring = 0; ring < 3; ring++)
             for (int k = 0; k < 6; k++) {
                 float turn = (float)k * 1.047f + (float)ring * 0.6f;
-                LeafBrush petal = {x,    y,    turn, 13.5f - 3.6f * (float)ring, 11 - 2.5f * (float)ring,
-                                   0,    0.03f + 0.006f * (float)ring, 0.003f, deep,
+                LeafBrush petal = {x,
+                                   y,
+                                   turn,
+                                   13.5f - 3.6f * (float)ring,
+                                   11 - 2.5f * (float)ring,
+                                   0,
+                                   0.03f + 0.006f * (float)ring,
+                                   0.003f,
+                                   deep,
                                    vec3_scale(pale, 1 - 0.12f * (float)ring)};
                 canvas_leaf(c, &petal, false);
             }
@@ -206,8 +236,14 @@ void paint_leaf_fern(Canvas *c) {
             float len = (0.35f + 1.2f * sinf(PI_F * (0.15f + 0.85f * t))) * 15;
             float tone = 0.7f + 0.4f * pick(f, i, 171);
             for (int side = -1; side <= 1; side += 2) {
-                LeafBrush leaf = {x, y, -PI_F / 2 + bend + (float)side * 0.95f, len, 6, 0.6f,
-                                  0.02f * pick(f, 9, 171), 0.003f,
+                LeafBrush leaf = {x,
+                                  y,
+                                  -PI_F / 2 + bend + (float)side * 0.95f,
+                                  len,
+                                  6,
+                                  0.6f,
+                                  0.02f * pick(f, 9, 171),
+                                  0.003f,
                                   vec3_scale(rgb255(44, 74, 36), tone),
                                   vec3_scale(rgb255(86, 122, 56), tone)};
                 canvas_leaf(c, &leaf, false);

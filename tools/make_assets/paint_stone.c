@@ -84,8 +84,8 @@ void paint_ashlar(Canvas *c) {
             stone = vec3_lerp(stone, vec3_scale(rgb255(104, 100, 88), 0.95f), stain * 0.35f);
             float lichen = float_smooth(0.28f, 0.5f, noise_fbm(u, v, 7, 5, 0.6f, 52));
             stone = vec3_lerp(stone, rgb255(150, 148, 112), lichen * 0.3f);
-            Vec3 mortar = vec3_scale(rgb255(150, 140, 120),
-                                     0.85f + 0.15f * noise_fbm(u, v, 50, 2, 0.5f, 53));
+            Vec3 mortar =
+                vec3_scale(rgb255(150, 140, 120), 0.85f + 0.15f * noise_fbm(u, v, 50, 2, 0.5f, 53));
             canvas_set(c, x, y, vec3_lerp(mortar, stone, body), height);
         }
     }
@@ -183,7 +183,8 @@ void paint_floor(Canvas *c) {
             col = vec3_lerp(col, rgb255(120, 92, 70), worn * 0.30f);
             col = vec3_scale(col, 1 + 0.14f * rough + 0.05f * fine);
             Vec3 grout = vec3_scale(rgb255(92, 84, 72), 1 + 0.2f * fine);
-            float tilt = px * (noise_random(id, 2, 76) - 0.5f) + py * (noise_random(id, 3, 77) - 0.5f);
+            float tilt =
+                px * (noise_random(id, 2, 76) - 0.5f) + py * (noise_random(id, 3, 77) - 0.5f);
             float height = body * (0.0045f + 0.0016f * tilt + 0.0018f * (tone - 0.5f)) +
                            0.0007f * rough * body + 0.0003f * fine - 0.0003f * mask;
             canvas_set(c, x, y, vec3_lerp(grout, col, body), height);

@@ -3,9 +3,7 @@
 
 #define PROFILE_MAX 64
 
-void shape_box(Soup *s, Vec3 lo, Vec3 hi, unsigned skip) {
-    shape_taper_box(s, lo, hi, 0, 0, skip);
-}
+void shape_box(Soup *s, Vec3 lo, Vec3 hi, unsigned skip) { shape_taper_box(s, lo, hi, 0, 0, skip); }
 
 void shape_taper_box(Soup *s, Vec3 lo, Vec3 hi, float ix, float iz, unsigned skip) {
     Vec3 p[8];
@@ -37,8 +35,10 @@ static Vec3 bevel_corner(Vec3 lo, Vec3 hi, float b, int corner, int full_axis) {
 // Adds a face with the winding that looks away from `inside`.
 static void quad_away(Soup *s, Vec3 inside, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
     Vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
-    if (vec3_dot(n, vec3_sub(a, inside)) > 0) soup_quad_box(s, a, b, c, d);
-    else soup_quad_box(s, d, c, b, a);
+    if (vec3_dot(n, vec3_sub(a, inside)) > 0)
+        soup_quad_box(s, a, b, c, d);
+    else
+        soup_quad_box(s, d, c, b, a);
 }
 
 void shape_bevel_box(Soup *s, Vec3 lo, Vec3 hi, float b) {
@@ -64,8 +64,10 @@ void shape_bevel_box(Soup *s, Vec3 lo, Vec3 hi, float b) {
         Vec3 p[3];
         for (int k = 0; k < 3; k++) p[k] = bevel_corner(lo, hi, b, c, k);
         Vec3 n = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
-        if (vec3_dot(n, vec3_sub(p[0], mid)) > 0) soup_triangle_box(s, p[0], p[1], p[2]);
-        else soup_triangle_box(s, p[2], p[1], p[0]);
+        if (vec3_dot(n, vec3_sub(p[0], mid)) > 0)
+            soup_triangle_box(s, p[0], p[1], p[2]);
+        else
+            soup_triangle_box(s, p[2], p[1], p[0]);
     }
 }
 
@@ -130,8 +132,8 @@ void shape_sweep(Soup *s, const SweepFrame *frames, int frame_count, const Vec2 
             float u0 = across / s->tile_m, u1 = (across + width) / s->tile_m;
             across += width;
             soup_quad(s, frame_point(frames + i, a), frame_point(frames + i, b),
-                      frame_point(frames + i + 1, b), frame_point(frames + i + 1, a),
-                      vec2(u0, v0), vec2(u1, v0), vec2(u1, v1), vec2(u0, v1));
+                      frame_point(frames + i + 1, b), frame_point(frames + i + 1, a), vec2(u0, v0),
+                      vec2(u1, v0), vec2(u1, v1), vec2(u0, v1));
         }
     }
 }
@@ -157,8 +159,10 @@ void shape_tube(Soup *s, Vec3 from, Vec3 to, float r0, float r1, int segments, b
     s->transform = affine_mul(&saved, &place);
     float h = vec3_length(vec3_sub(to, from));
     Vec2 profile[4] = {{0, 0}, {r0, 0}, {r1, h}, {0, h}};
-    if (caps) shape_turn(s, profile, 4, segments);
-    else shape_turn(s, profile + 1, 2, segments);
+    if (caps)
+        shape_turn(s, profile, 4, segments);
+    else
+        shape_turn(s, profile + 1, 2, segments);
     s->transform = saved;
 }
 
@@ -195,9 +199,9 @@ void shape_ball(Soup *s, Vec3 center, Vec3 radius, int segments, int rings) {
 
 void shape_icosahedron(Soup *s, Vec3 c, float radius) {
     static const unsigned char FACES[20][3] = {
-        {0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-        {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     const float g = 1.618034f, k = radius / sqrtf(1 + g * g);
     const float corners[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                                   {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},

@@ -10,12 +10,12 @@
 
 // Faces that a box leaves out because a neighbour hides them.
 enum {
-    SKIP_LEFT = 1,    // -x
-    SKIP_RIGHT = 2,   // +x
-    SKIP_BOTTOM = 4,  // -y
-    SKIP_TOP = 8,     // +y
-    SKIP_BACK = 16,   // -z
-    SKIP_FRONT = 32,  // +z
+    SKIP_LEFT = 1,   // -x
+    SKIP_RIGHT = 2,  // +x
+    SKIP_BOTTOM = 4, // -y
+    SKIP_TOP = 8,    // +y
+    SKIP_BACK = 16,  // -z
+    SKIP_FRONT = 32, // +z
     SKIP_ENDS = SKIP_LEFT | SKIP_RIGHT
 };
 
@@ -35,8 +35,7 @@ void shape_turn(Soup *s, const Vec2 *profile, int count, int segments); // a who
 
 // A parametric surface over u, v in 0..1; faces cross(dP/du, dP/dv). `repeat` texture repeats.
 typedef Vec3 (*ShapeSurface)(const void *context, float u, float v);
-void shape_surface(Soup *s, ShapeSurface surface, const void *context, int nu, int nv,
-                   Vec2 repeat);
+void shape_surface(Soup *s, ShapeSurface surface, const void *context, int nu, int nv, Vec2 repeat);
 
 // Sweeps a profile along frames: point = origin + a * profile.x + b * profile.y. The profile runs
 // counter-clockwise in (a, b) where the path runs along cross(a, b).

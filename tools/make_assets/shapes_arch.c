@@ -12,9 +12,7 @@ Vec2 arch_point(const Arch *a, float offset, float t) {
     return vec2(side * (radius * cosf(angle) - center), a->spring_y + radius * sinf(angle));
 }
 
-float arch_rise(const Arch *a, float offset) {
-    return arch_point(a, offset, 0.5f).y - a->spring_y;
-}
+float arch_rise(const Arch *a, float offset) { return arch_point(a, offset, 0.5f).y - a->spring_y; }
 
 void shape_arch_moulding(Soup *s, const Arch *a, const Vec2 *profile, int count, int segments,
                          int stones, int other) {
@@ -46,8 +44,10 @@ void shape_arch_moulding(Soup *s, const Arch *a, const Vec2 *profile, int count,
 }
 
 static void quad_facing(Soup *s, float facing, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-    if (facing > 0) soup_quad_box(s, a, b, c, d);
-    else soup_quad_box(s, d, c, b, a);
+    if (facing > 0)
+        soup_quad_box(s, a, b, c, d);
+    else
+        soup_quad_box(s, d, c, b, a);
 }
 
 void shape_spandrel(Soup *s, const Arch *a, float offset, float x_lo, float x_hi, float y_bottom,
@@ -85,10 +85,10 @@ void shape_jambs(Soup *s, const Arch *a, const Vec2 *profile, int count, float y
         float xp = a->half_span + p.x, xq = a->half_span + q.x;
         Vec2 u0 = vec2(across * k, y0 * k), u1 = vec2((across + width) * k, y0 * k);
         Vec2 u2 = vec2((across + width) * k, y1 * k), u3 = vec2(across * k, y1 * k);
-        soup_quad(s, vec3(-xp, y0, p.y), vec3(-xq, y0, q.y), vec3(-xq, y1, q.y),
-                  vec3(-xp, y1, p.y), u0, u1, u2, u3);
-        soup_quad(s, vec3(xp, y1, p.y), vec3(xq, y1, q.y), vec3(xq, y0, q.y), vec3(xp, y0, p.y),
-                  u3, u2, u1, u0);
+        soup_quad(s, vec3(-xp, y0, p.y), vec3(-xq, y0, q.y), vec3(-xq, y1, q.y), vec3(-xp, y1, p.y),
+                  u0, u1, u2, u3);
+        soup_quad(s, vec3(xp, y1, p.y), vec3(xq, y1, q.y), vec3(xq, y0, q.y), vec3(xp, y0, p.y), u3,
+                  u2, u1, u0);
         across += width;
     }
 }
