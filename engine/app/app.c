@@ -154,7 +154,7 @@ bool app_restart(App *app) {
 static void app_poll_level(App *app) {
     int result = session_poll_reload(&app->session);
     if (result == 0) return;
-    diagnostics_print(app->session.diagnostics, stderr);
+    if (app->session.diagnostics->count > 0) diagnostics_print(app->session.diagnostics, stderr);
     if (result > 0) {
         app->level_error[0] = 0;
         app_record_stop(app);
@@ -178,6 +178,14 @@ void app_poll_files(App *app, f64 now_ms) {
 
 // --- Time ---
 
+void app_check_replay(App *app) {
+    RecordingDifference difference;
+    bool same = recording_check_tick(app->replay_check, app->replay_tick, app->session.world,
+                                     &difference);
+    // The first difference tells; those that follow come from it.
+    if (!same && app->replay_differences++ == 0) app_say(app, "%s", difference.text);
+}
+
 bool app_tick(App *app, Input input) {
     if (app->has_replay) {
         if (app->replay_tick >= app->replay.tick_count) return false;
@@ -185,12 +193,8 @@ bool app_tick(App *app, Input input) {
     }
     session_tick(&app->session, input);
     if (app->has_replay) {
-        RecordingDifference difference;
-        if (!recording_check_tick(app->replay_check, app->replay_tick, app->session.world,
-                                  &difference) &&
-            app->replay_differences++ == 0)
-            app_say(app, "%s", difference.text);
         app->replay_tick++;
+        app_check_replay(app);
     }
     if (app->writer) recording_writer_tick(app->writer, input, app->session.world);
     return true;

@@ -143,6 +143,8 @@ void app_poll_files(App *app, f64 now_ms);
 // One tick: the given input, or the replayed one; recorded if a recording runs. False: the
 // replay is over.
 bool app_tick(App *app, Input input);
+// Compares the world with the replayed recording after replay_tick ticks.
+void app_check_replay(App *app);
 // Loads the level again from its start; the player stands where it begins.
 bool app_restart(App *app);
 // The frame packet of what is looked at, for a picture of width x height pixels at settings.scale.

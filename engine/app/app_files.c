@@ -52,6 +52,10 @@ void app_write_frame_file(App *app, const Packet *packet) {
 
 void app_record_start(App *app, const char *path) {
     if (app->writer || !app->session.world) return;
+    if (app->has_replay) {
+        app_say(app, "a replay is running; it is a recording already");
+        return;
+    }
     if (path) snprintf(app->record_path, sizeof app->record_path, "%s", path);
     else if (!app_next_path(app, "recording", "luzr", app->record_path, sizeof app->record_path))
         return;
@@ -93,8 +97,9 @@ bool app_replay_open(App *app, const char *path) {
     app->replay_check =
         recording_check_create(&app->replay, app->session.world, &app->replay_arena);
     app->settings = info->settings;
-    app->has_replay = true;
-    return true;
+    app->has_replay = app->replay_check != NULL;
+    if (app->has_replay) app_check_replay(app);
+    return app->has_replay;
 }
 
 // --- Status ---

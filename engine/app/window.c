@@ -312,7 +312,8 @@ static void frame(Window *window) {
     if (app->panel != window->was_panel) capture_mouse(window, !app->panel);
     window->was_panel = app->panel;
     app_poll_files(app, window->frame_start_ms);
-    if (app->want_restart && !app_restart(app)) app_say(app, "the level cannot be started anew");
+    if (app->want_restart && !app->has_replay && !app_restart(app))
+        app_say(app, "the level cannot be started anew");
     app->want_restart = false;
     prepare_level(window);
     simulate(window);
