@@ -1,8 +1,8 @@
 // diagnostics.c: errors and warnings with their place, source line, caret and hint.
-// Data in: a place in the text and a message. Data out: items of a Diagnostics, sorted by place, and
-// their printed form. Called by the level readers (add, sort) and by whoever shows them (format,
-// print). Does not: decide what is an error, or keep more than LEVEL_DIAGNOSTICS_MAX (the rest is
-// counted).
+// Data in: a place in the text and a message. Data out: items of a Diagnostics, sorted by place,
+// and their printed form. Called by the level readers (add, sort) and by whoever shows them
+// (format, print). Does not: decide what is an error, or keep more than LEVEL_DIAGNOSTICS_MAX (the
+// rest is counted).
 #include "level_internal.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,8 +18,8 @@ static void take_source(Diagnostic *diagnostic, const LevelText *text, Arena *ar
     diagnostic->caret = 0;
     if (diagnostic->line == 0 || diagnostic->line > text->line_count) return;
     u64 first = text->line_first[diagnostic->line - 1];
-    u64 end = first;
-    while (end < text->size && text->data[end] != '\n') end++;
+    u64 end = text->size; // not searched for: a line can be the whole of a hostile file
+    if (diagnostic->line < text->line_count) end = text->line_first[diagnostic->line] - 1;
     if (end > first && text->data[end - 1] == '\r') end--;
     u64 at = MIN(first + diagnostic->column - 1, end);
     u64 from = first;

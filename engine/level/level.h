@@ -21,7 +21,7 @@ extern "C" {
 #define LEVEL_PREFAB_DEPTH_MAX 32     // prefabs within prefabs
 
 typedef struct Diagnostic {
-    bool is_error;      // else a warning
+    bool is_error; // else a warning
     const char *file;
     u32 line, column;   // 1-based; column counts bytes
     const char *text;   // "unknown key 'intensty'"

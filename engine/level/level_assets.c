@@ -1,8 +1,8 @@
 // level_assets.c: [[model]] and [[material]] to asset store and world.
 // Data in: nodes. Data out: an entity with `model` per model, its file's materials as entities
-// "model/material" with consecutive indices, an entity with `material` per declared material. Called by
-// level_read.c before any entity is read, so that ids depend on the order of models and materials only.
-// Does not: place anything.
+// "model/material" with consecutive indices, an entity with `material` per declared material.
+// Called by level_read.c before any entity is read, so that ids depend on the order of models and
+// materials only. Does not: place anything.
 #include "level_internal.h"
 #include "../base/log.h"
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 #define SHAPE_DETAIL_MAX 512 // segments, rings
 
-static const char *const model_keys[] = {"name", "file",      "shape",   "segments",
+static const char *const model_keys[] = {"name",  "file", "shape",     "segments",
                                          "rings", "tube", "uv_repeat", "inverted"};
 
 void level_fill_material(MaterialTable *m, u32 row, const ModelMaterial *material) {
@@ -43,8 +43,8 @@ const char *level_material_name(const Model *model, u32 index, const char *model
     if (is_unique) {
         snprintf(out, out_cap, "%s/%.120s", model_name, own);
     } else {
-        snprintf(out, out_cap, "%s/%.100s%s%u", model_name, own ? own : "", own && own[0] ? "#" : "",
-                 index);
+        snprintf(out, out_cap, "%s/%.100s%s%u", model_name, own ? own : "",
+                 own && own[0] ? "#" : "", index);
     }
     for (char *c = out; *c; c++)
         if ((u8)*c < 32 || (u8)*c == 127) *c = ' ';
@@ -141,7 +141,8 @@ static u32 read_model(LevelReader *reader, const TomlNode *table, const char **n
             level_read_bool(reader, node, "model.inverted", &shape.inverted);
         } else {
             Suggestion suggestion = suggest_begin(node->key);
-            for (u32 i = 0; i < COUNT_OF(model_keys); i++) suggest_offer(&suggestion, model_keys[i]);
+            for (u32 i = 0; i < COUNT_OF(model_keys); i++)
+                suggest_offer(&suggestion, model_keys[i]);
             char hint[96];
             level_error(reader, node->key_place, suggest_hint(&suggestion, hint, sizeof hint),
                         "unknown key '%.80s' of model", node->key);
@@ -149,8 +150,7 @@ static u32 read_model(LevelReader *reader, const TomlNode *table, const char **n
         }
         if (!detail) detail = node;
     }
-    if (!toml_find(table, "name"))
-        level_error(reader, table->place, NULL, "the model has no name");
+    if (!toml_find(table, "name")) level_error(reader, table->place, NULL, "the model has no name");
     if (file && shape_key) {
         level_error(reader, shape_key->key_place, NULL, "a model has a file or a shape, not both");
     } else if (!file && !shape_key) {
@@ -182,9 +182,8 @@ void level_read_models(LevelReader *reader, const TomlNode *list) {
         u32 model = read_model(reader, table, &name, &name_place);
         if (!name) continue;
         Entity entity = level_spawn_model(reader->world, reader->store, model, name);
-        const LevelName *old =
-            level_names_add(&reader->names, &reader->scratch,
-                            (LevelName){name, entity, NAME_MODEL, name_place});
+        const LevelName *old = level_names_add(&reader->names, &reader->scratch,
+                                               (LevelName){name, entity, NAME_MODEL, name_place});
         if (old) {
             level_error(reader, name_place, NULL, "a model is already named '%s' (line %u)", name,
                         old->place.line);
@@ -210,7 +209,8 @@ static Entity material_entity(LevelReader *reader, const char *name, TomlPlace p
     if (strchr(name, '/')) {
         if (old) return old->value;
         char hint[192];
-        level_error(reader, place, level_suggest_name(reader, NAME_MATERIAL, name, hint, sizeof hint),
+        level_error(reader, place,
+                    level_suggest_name(reader, NAME_MATERIAL, name, hint, sizeof hint),
                     "no model has a material '%s'", name);
         return ENTITY_NONE;
     }

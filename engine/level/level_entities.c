@@ -1,8 +1,8 @@
 // level_entities.c: entity tables ([[entity]] and [[prefab.entity]]) to blueprints.
 // Data in: nodes. Data out: reader->entities and reader->prefabs: per table its components, its
 // assignments in one shared array, what varies and how often it repeats; references within a prefab
-// and cycles of prefabs are settled here. Called by level_read.c. Does not: touch the world; a prefab's
-// mistakes are reported once, however often it is used.
+// and cycles of prefabs are settled here. Called by level_read.c. Does not: touch the world; a
+// prefab's mistakes are reported once, however often it is used.
 #include "level_internal.h"
 #include <stdio.h>
 #include <string.h>
@@ -79,8 +79,7 @@ static void report_unknown_component(LevelReader *reader, const TomlNode *node) 
             suggest_offer(&suggestion, keys->components[i].desc->name);
     suggest_hint(&suggestion, hint, sizeof hint);
     for (u32 i = 0; i < keys->count; i++) {
-        if (!level_is_entity_component(keys, i) ||
-            !level_find_key(&keys->components[i], node->key))
+        if (!level_is_entity_component(keys, i) || !level_find_key(&keys->components[i], node->key))
             continue;
         snprintf(hint, sizeof hint, "did you mean '%s.%.64s'?", keys->components[i].desc->name,
                  node->key);
@@ -94,8 +93,10 @@ static u32 add_parent(LevelReader *reader, const TomlNode *node, u32 prefab) {
     if (!level_read_name(reader, node, "parent", &name)) return UINT32_MAX;
     LEVEL_APPEND(&reader->scratch, reader->references, reader->reference_count,
                  reader->reference_cap,
-                 (LevelReference){.name = name, .place = node->place,
-                                  .component = COMPONENT_transform, .prefab = prefab,
+                 (LevelReference){.name = name,
+                                  .place = node->place,
+                                  .component = COMPONENT_transform,
+                                  .prefab = prefab,
                                   .local = UINT32_MAX});
     return reader->reference_count - 1;
 }
@@ -134,8 +135,8 @@ static void read_blueprint(LevelReader *reader, const TomlNode *table, u32 prefa
                 blueprint->name_place = node->place;
         } else if (strcmp(node->key, "prefab") == 0) {
             read_prefab_name(reader, node, blueprint);
-        } else if (is_root && (strcmp(node->key, "parent") == 0 ||
-                               strcmp(node->key, "repeat") == 0)) {
+        } else if (is_root &&
+                   (strcmp(node->key, "parent") == 0 || strcmp(node->key, "repeat") == 0)) {
             level_error(reader, node->key_place, "write it where the prefab is used",
                         "the root of a prefab cannot have '%s'", node->key);
         } else if (strcmp(node->key, "parent") == 0) {
@@ -166,9 +167,9 @@ static void settle_local_names(LevelReader *reader, LevelPrefab *prefab, u32 ind
     for (u32 i = 0; i < prefab->count; i++) {
         const Blueprint *blueprint = &prefab->blueprints[i];
         if (!blueprint->name) continue;
-        const LevelName *old = level_names_add(
-            &local, &reader->scratch,
-            (LevelName){blueprint->name, i, NAME_ENTITY, blueprint->name_place});
+        const LevelName *old =
+            level_names_add(&local, &reader->scratch,
+                            (LevelName){blueprint->name, i, NAME_ENTITY, blueprint->name_place});
         if (old)
             level_error(reader, blueprint->name_place, NULL,
                         "'%s' is already an entity of this prefab (line %u)", blueprint->name,
@@ -303,9 +304,8 @@ void level_read_entities(LevelReader *reader, const TomlNode *list) {
         Blueprint *blueprint = &reader->entities[i];
         read_blueprint(reader, table, UINT32_MAX, false, blueprint);
         if (!blueprint->name) blueprint->unnamed = unnamed++;
-        u64 size = blueprint->prefab == UINT32_MAX
-                       ? 1
-                       : MAX(reader->prefabs[blueprint->prefab].size, 1u);
+        u64 size =
+            blueprint->prefab == UINT32_MAX ? 1 : MAX(reader->prefabs[blueprint->prefab].size, 1u);
         size *= blueprint->copy_count;
         if (reader->entity_total + size > LEVEL_ENTITIES_MAX) {
             if (refused++ == 0)

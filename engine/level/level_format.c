@@ -4,8 +4,8 @@
 //   { a = 1, b = [1, 2] }   braces have inner spaces, brackets have none; ", " between values
 //   [[entity]]              one blank line before a header and the comments that belong to it
 //   [                       what goes on over lines is indented by 4 per open bracket
-// no blank line at the start or the end or twice in a row, no space at the end of a line, lines end in
-// \n. Called by `luz fmt`. Does not: break or join lines, sort, or respell values.
+// no blank line at the start or the end or twice in a row, no space at the end of a line, lines end
+// in \n. Called by `luz fmt`. Does not: break or join lines, sort, or respell values.
 #include "level_format.h"
 #include "level_text.h"
 #include "toml.h"
@@ -16,12 +16,12 @@ typedef struct Formatter {
     TextBuilder out;
     char brackets[TOML_NESTING_MAX + 2]; // open ones: '[' or '{'
     u32 depth;
-    bool line_has_text;   // something was put on this line
-    bool expects_key;     // at the start of a line, or behind '{' or ',' in a table
-    u32 blank_lines;      // seen and not yet written
-    u64 line_start;       // in out: where this line begins
-    u64 comments_start;   // in out: where the block of comment lines above begins; UINT64_MAX: none
-    char last;            // last token: a punctuation mark, 'v' a value or key, 0 none on this line
+    bool line_has_text; // something was put on this line
+    bool expects_key;   // at the start of a line, or behind '{' or ',' in a table
+    u32 blank_lines;    // seen and not yet written
+    u64 line_start;     // in out: where this line begins
+    u64 comments_start; // in out: where the block of comment lines above begins; UINT64_MAX: none
+    char last;          // last token: a punctuation mark, 'v' a value or key, 0 none on this line
 } Formatter;
 
 static const char *string_end(const char *at) {
@@ -87,8 +87,8 @@ static void end_line(Formatter *f) {
     }
 }
 
-// The line's comment. Its distance from the text is the author's (columns of comments stay columns),
-// at least one space.
+// The line's comment. Its distance from the text is the author's (columns of comments stay
+// columns), at least one space.
 static const char *format_comment(Formatter *f, const char *at, u64 spaces) {
     const char *end = at;
     while (*end && *end != '\n') end++;

@@ -5,9 +5,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-// Text in place: comments, order, line breaks and the spelling of values stay; spaces, indentation and
-// blank lines become uniform. Formatting twice changes nothing more. False if the text is not TOML
-// (it is then untouched and *out is NULL; level_load tells what is wrong).
+// Text in place: comments, order, line breaks and the spelling of values stay; spaces, indentation
+// and blank lines become uniform. Formatting twice changes nothing more. False if the text is not
+// TOML (it is then untouched and *out is NULL; level_load tells what is wrong).
 bool level_format_text(const char *text, Arena *arena, const char **out);
 #ifdef __cplusplus
 }

@@ -1,8 +1,8 @@
 // level_gltf.c: a .gltf or .glb file as a level of its own.
 // Data in: a model file. Data out: the same rows as level text would make: the model, one static
-// instance of it, its lights and cameras; a sun if it brings no light, a camera if it brings no view,
-// and the entity "spawn" where a player starts. Called by level_read.c. Does not: read node names or
-// animations; a model that the engine refuses is one diagnostic.
+// instance of it, its lights and cameras; a sun if it brings no light, a camera if it brings no
+// view, and the entity "spawn" where a player starts. Called by level_read.c. Does not: read node
+// names or animations; a model that the engine refuses is one diagnostic.
 #include "level_internal.h"
 #include "../base/log.h"
 #include <stdio.h>
@@ -66,8 +66,7 @@ static void spawn_light(LevelReader *reader, const ModelLight *light, bool *has_
         l->inner_angle[row] = CLAMP(degrees(light->inner_rad), 0.0f, 89.0f);
         l->outer_angle[row] = CLAMP(degrees(light->outer_rad), 0.1f, 89.0f);
     }
-    if (light->kind == LIGHT_DIRECTIONAL && !*has_shadow)
-        l->casts_shadow[row] = *has_shadow = true;
+    if (light->kind == LIGHT_DIRECTIONAL && !*has_shadow) l->casts_shadow[row] = *has_shadow = true;
 }
 
 static void spawn_sun(LevelReader *reader) {
@@ -105,8 +104,9 @@ typedef struct View {
     bool is_inside;
 } View;
 
-// Outside: from the front right, a little above, as far as the bounding sphere needs. Inside: above the
-// floor, a quarter of the length from one end and a little off the middle, along the longest axis.
+// Outside: from the front right, a little above, as far as the bounding sphere needs. Inside: above
+// the floor, a quarter of the length from one end and a little off the middle, along the longest
+// axis.
 static View frame_bounds(Vec3 min, Vec3 max) {
     Vec3 size = vec3_sub(max, min), center = vec3_scale(vec3_add(min, max), 0.5f);
     f32 longest = MAX(size.x, MAX(size.y, size.z));

@@ -1,17 +1,17 @@
 // level_internal.h: what the files of level/ share: the reader's state and its intermediate data.
 //
-// Text becomes nodes (toml.h), nodes become blueprints (one per entity table: which components, which
-// values, how often), blueprints become rows. Everything here lives in the reader's own arena and
-// is gone when level_load returns; only diagnostics and LevelInfo outlive it.
+// Text becomes nodes (toml.h), nodes become blueprints (one per entity table: which components,
+// which values, how often), blueprints become rows. Everything here lives in the reader's own arena
+// and is gone when level_load returns; only diagnostics and LevelInfo outlive it.
 #ifndef LUZ_LEVEL_INTERNAL_H
 #define LUZ_LEVEL_INTERNAL_H
 #include "level.h"
 #include "suggest.h"
 #include "toml.h"
 
-#define LEVEL_ELEMENTS_MAX   16 // of an array key
-#define LEVEL_SUGGESTIONS_MAX 4000000 // comparisons of names in one run, so that a hostile file with
-                                      // many wrong names among many names stays cheap
+#define LEVEL_ELEMENTS_MAX 16 // of an array key
+// Comparisons of names in one run: a hostile file with many wrong names among many stays cheap.
+#define LEVEL_SUGGESTIONS_MAX 4000000
 #define COMPONENT_ANY UINT32_MAX
 
 // --- Keys of components (level_keys.c) ---
@@ -86,9 +86,9 @@ const LevelName *level_names_find(const LevelNames *names, LevelNameKind kind, c
 
 // --- Values (level_values.c) ---
 
-// References, textures and points get their ids when all rows are there, in the order of the tables:
-// ids are then a function of the world and not of the order of the text. Until then a cell holds
-// LATE_VALUE | index, which no id of a fresh world or store can be.
+// References, textures and points get their ids when all rows are there, in the order of the
+// tables: ids are then a function of the world and not of the order of the text. Until then a cell
+// holds LATE_VALUE | index, which no id of a fresh world or store can be.
 #define LATE_VALUE 0x80000000u
 
 typedef enum LevelValueKind {
@@ -108,10 +108,10 @@ typedef struct LevelValue {
 typedef struct LevelReference {
     const char *name;
     TomlPlace place;
-    u32 component;       // that the target must have, or COMPONENT_ANY
-    u32 prefab;          // index of the prefab that it is written in, or UINT32_MAX
-    u32 local;           // index of the target within that prefab, or UINT32_MAX: a global name
-    Entity target;       // of a global name, once found
+    u32 component; // that the target must have, or COMPONENT_ANY
+    u32 prefab;    // index of the prefab that it is written in, or UINT32_MAX
+    u32 local;     // index of the target within that prefab, or UINT32_MAX: a global name
+    Entity target; // of a global name, once found
     bool is_reported;
 } LevelReference;
 
@@ -142,11 +142,11 @@ typedef enum RepeatKind { REPEAT_ROW, REPEAT_RING, REPEAT_SCATTER, REPEAT_GRID }
 
 typedef struct LevelRepeat {
     RepeatKind kind;
-    u32 count;         // copies of this factor
-    u32 counts[3];     // grid
-    Vec3 a, b;         // row, grid: a = step; scatter: a = min, b = max
+    u32 count;     // copies of this factor
+    u32 counts[3]; // grid
+    Vec3 a, b;     // row, grid: a = step; scatter: a = min, b = max
     f32 radius, start_deg;
-    u32 axis;          // 0 x, 1 y, 2 z
+    u32 axis; // 0 x, 1 y, 2 z
     bool face;
     bool has_seed;
     u64 seed;
@@ -156,20 +156,20 @@ typedef struct LevelVary {
     u16 component, column; // the first
     u32 count;             // elements
     ColumnType type;
-    u64 key_hash;          // of "component.key"
+    u64 key_hash;              // of "component.key"
     const LevelValue *choices; // or NULL: range
     u32 choice_count;
-    bool is_uniform;       // one draw for all elements
+    bool is_uniform; // one draw for all elements
     f64 lo[LEVEL_ELEMENTS_MAX], hi[LEVEL_ELEMENTS_MAX];
 } LevelVary;
 
 typedef struct Blueprint {
     const char *name; // or NULL
     TomlPlace place, name_place, prefab_place, repeat_place;
-    u32 prefab;       // index, or UINT32_MAX
-    u32 parent;       // index into references, or UINT32_MAX
-    u32 unnamed;      // how many unnamed entities came before: the key of random streams
-    u64 components;   // bit per component id
+    u32 prefab;     // index, or UINT32_MAX
+    u32 parent;     // index into references, or UINT32_MAX
+    u32 unnamed;    // how many unnamed entities came before: the key of random streams
+    u64 components; // bit per component id
     u32 assignment_first, assignment_count; // in reader->assignments
     LevelVary *varies;
     LevelRepeat *repeats;
@@ -182,9 +182,9 @@ typedef struct LevelPrefab {
     TomlPlace place;
     Blueprint *blueprints; // the first is the root
     u32 count;
-    u32 height;      // 1 + that of the highest prefab within
-    u64 size;        // entities of one instance, saturated
-    u8 state;        // of the search for cycles: 0 new, 1 on the way, 2 done
+    u32 height; // 1 + that of the highest prefab within
+    u64 size;   // entities of one instance, saturated
+    u8 state;   // of the search for cycles: 0 new, 1 on the way, 2 done
     bool is_used;
 } LevelPrefab;
 
@@ -208,8 +208,8 @@ typedef struct LevelReader {
     AssetStore *store;
     LevelInfo *info;
     Diagnostics *diagnostics;
-    Arena *arena;   // the caller's: texts that outlive the load
-    Arena scratch;  // everything else
+    Arena *arena;     // the caller's: texts that outlive the load
+    Arena scratch;    // everything else
     const char *file; // for messages
     LevelText text;
     LevelKeys keys;
@@ -230,8 +230,8 @@ typedef struct LevelReader {
 
 // Makes room for one more element behind `count` (array doubled in the arena).
 void *level_grow(Arena *arena, void *array, u32 count, u32 *cap, u64 element_size);
-#define LEVEL_APPEND(arena, array, count, cap, ...)                                         \
-    ((array) = level_grow((arena), (array), (count), &(cap), sizeof *(array)),              \
+#define LEVEL_APPEND(arena, array, count, cap, ...)                                                \
+    ((array) = level_grow((arena), (array), (count), &(cap), sizeof *(array)),                     \
      (array)[(count)++] = (__VA_ARGS__))
 
 // --- Diagnostics (diagnostics.c) ---
@@ -309,8 +309,8 @@ const char *level_material_name(const Model *model, u32 index, const char *model
 // Rows for all blueprints, references, drawables.
 void level_spawn_all(LevelReader *reader);
 // Writes a value into a cell of an entity that has the component.
-void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column, LevelValueKind kind,
-                  u32 bits);
+void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column,
+                  LevelValueKind kind, u32 bits);
 void level_spawn_all_drawables(LevelReader *reader, TomlPlace place);
 
 // A .gltf or .glb file as a level.

@@ -1,7 +1,8 @@
 // level_keys.c: the keys of level text, from the column descriptions of the registered components.
-// Data in: a world's ComponentDescs. Data out: per component its keys; "position[0]", "position[1]",
-// "position[2]" are one key of three columns. Called by reader, writer and schema, so that the three
-// cannot disagree. Does not: know any component by name, except those that entity tables cannot have.
+// Data in: a world's ComponentDescs. Data out: per component its keys; "position[0]",
+// "position[1]", "position[2]" are one key of three columns. Called by reader, writer and schema,
+// so that the three cannot disagree. Does not: know any component by name, except those that entity
+// tables cannot have.
 #include "level_internal.h"
 #include <stdlib.h>
 #include <string.h>

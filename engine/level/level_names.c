@@ -1,7 +1,7 @@
 // level_names.c: names of entities, models, materials and prefabs, to be found in constant time.
-// Data in: names in the order of the file. Data out: who has a name, and the nearest one for a hint.
-// Called by the readers while they fill the world. Does not: copy the texts (they live in the reader's
-// arena), or forget a name.
+// Data in: names in the order of the file. Data out: who has a name, and the nearest one for a
+// hint. Called by the readers while they fill the world. Does not: copy the texts (they live in the
+// reader's arena), or forget a name.
 #include "level_internal.h"
 #include "../base/hash.h"
 #include <string.h>

@@ -1,10 +1,11 @@
 // level_read.c: level_load: one file to a world, an asset store and diagnostics.
-// Data in: a path below the data root. Data out: rows and assets, or every mistake of the file in one
-// run. Called by the app, the tools and the tests. Does not: stop at the first mistake, or know any
-// component: keys, types, ranges and defaults come from the column descriptions (level_keys.c).
+// Data in: a path below the data root. Data out: rows and assets, or every mistake of the file in
+// one run. Called by the app, the tools and the tests. Does not: stop at the first mistake, or know
+// any component: keys, types, ranges and defaults come from the column descriptions (level_keys.c).
 //
 // THE FORMAT is TOML 1.0. Units are metres, degrees, seconds; colours are [r, g, b] linear or
-// "#rrggbb" / "#rgb" sRGB. Paths start at the data root and never leave it. All tables are optional.
+// "#rrggbb" / "#rgb" sRGB. Paths start at the data root and never leave it. All tables are
+// optional.
 //
 //   [level]                         # about the file
 //   title = "Cloister"
@@ -47,20 +48,21 @@
 //   repeat = { row = { count = 8, step = [3, 0, 0] } }
 //   vary = { flicker.rate = { min = 4, max = 9 }, light.color = { choose = ["#fff", "#fc8"] } }
 //
-// Every entity has `transform`. A key that refers (instance.model, a key of a game's component) takes the
-// name of something that has the needed component; within a prefab its own entities come first.
-// "" means none. The entities of a prefab instance "lamp" are named "lamp/glow".
+// Every entity has `transform`. A key that refers (instance.model, a key of a game's component)
+// takes the name of something that has the needed component; within a prefab its own entities come
+// first; "" means none. The entities of a prefab instance "lamp" are named "lamp/glow".
 //
 // repeat is a table of factors, or a list of such tables: their product, the first outermost:
 //   row     { count, step = [x, y, z] }
 //   ring    { count, radius, axis = "x|y|z" (y), start = degrees (0), face = bool (true) }
-//           from +x (axis x: from +y) about the entity's position; face turns each copy with its place
+//           from +x (axis x: from +y) about the entity's position; face turns each copy with its
+//           place
 //   scatter { count, min = [..], max = [..], seed }  within a box; equal seeds give equal places
 //   grid    { count = [nx, ny, nz], step = [x, y, z] }  x counts fastest
 // Offsets are in the parent's space and are added to transform.position; a factor turned by a ring
 // turns what is inside it. Copies are named "name", "name.1", "name.2" ...
-// vary draws a value per copy: { min, max } for numbers (two single numbers for an array key: one draw
-// for all elements; lists: one each) or { choose = [...] } for anything.
+// vary draws a value per copy: { min, max } for numbers (two single numbers for an array key: one
+// draw for all elements; lists: one each) or { choose = [...] } for anything.
 //
 // A .gltf or .glb file is a level as well: see level_gltf.c.
 #include "level_internal.h"
@@ -70,8 +72,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SCRATCH_SIZE     GIB(4) // of address space; a text of the largest size needs about 1 GiB
+#define SCRATCH_SIZE     GIB(4) // of address space, halved where the system refuses so much
 #define SCRATCH_SIZE_MIN MIB(256)
+#define SCRATCH_PER_BYTE 256 // of text; the densest text ("[{}, {}, ...") takes about 110
 #define DEFAULT_SEED     1
 
 static void list_lines(LevelText *text, Arena *arena) {
@@ -106,8 +109,8 @@ static void read_level_table(LevelReader *reader, const TomlNode *table) {
     }
 }
 
-// Singletons in the order of their ids, whatever the order of the file: handles do not depend on it.
-// The engine's own are always there.
+// Singletons in the order of their ids, whatever the order of the file: handles do not depend on
+// it. The engine's own are always there.
 static void read_singletons(LevelReader *reader, const TomlNode *root) {
     for (u32 i = 0; i < reader->keys.count; i++) {
         const ComponentDesc *desc = reader->keys.components[i].desc;
@@ -189,7 +192,8 @@ static void hash_assets(LevelInfo *info, const AssetStore *store) {
 
 static bool read_file(LevelReader *reader, const char *path) {
     Bytes bytes;
-    if (file_root_read(reader->root, path, LEVEL_TEXT_SIZE_MAX, &reader->scratch, &bytes)) {
+    u64 max_size = MIN(LEVEL_TEXT_SIZE_MAX, reader->scratch.cap / SCRATCH_PER_BYTE);
+    if (file_root_read(reader->root, path, max_size, &reader->scratch, &bytes)) {
         reader->text = (LevelText){.data = bytes.data, .size = bytes.size};
         list_lines(&reader->text, &reader->scratch);
         return true;
@@ -251,8 +255,8 @@ bool level_load(const FileRoot *root, const char *path, World *world, AssetStore
 bool level_find_root(const char *path, char *root, u64 root_cap, char *relative, u64 relative_cap) {
     char resolved[4096];
     const char *full = path;
-    // The nearest "data" in the path as typed keeps messages short; if there is none, or if the path
-    // climbs, the real one is searched.
+    // The nearest "data" in the path as typed keeps messages short; if there is none, or if the
+    // path climbs, the real one is searched.
     for (u32 attempt = 0; attempt < 2; attempt++) {
         const char *after = NULL;
         for (const char *part = full; part; part = strchr(part, '/'), part = part ? part + 1 : NULL)

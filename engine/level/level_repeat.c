@@ -1,14 +1,14 @@
 // level_repeat.c: repetition: rows, rings, scatters, grids and their products.
-// Data in: the node of an entity's `repeat`. Data out: the blueprint's list of factors, and later the
-// placement of each copy. Called by level_entities.c (read) and level_spawn.c (place). Does not: know
-// components; a placement is a rotation and an offset in the parent's space, put before the entity's
-// own transform, the first factor outermost.
+// Data in: the node of an entity's `repeat`. Data out: the blueprint's list of factors, and later
+// the placement of each copy. Called by level_entities.c (read) and level_spawn.c (place). Does
+// not: know components; a placement is a rotation and an offset in the parent's space, put before
+// the entity's own transform, the first factor outermost.
 #include "level_internal.h"
 #include "../base/random.h"
 #include <stdio.h>
 #include <string.h>
 
-#define DISTANCE_MAX 1e5 // m
+#define DISTANCE_MAX       1e5 // m
 #define REPEAT_FACTORS_MAX 8
 
 static const char *const repeat_names[] = {"row", "ring", "scatter", "grid"};
@@ -148,8 +148,7 @@ static void read_table(LevelReader *reader, const TomlNode *table, Blueprint *bl
                         REPEAT_FACTORS_MAX);
             return;
         }
-        blueprint->repeats[blueprint->repeat_count++] =
-            read_factor(reader, node, (RepeatKind)kind);
+        blueprint->repeats[blueprint->repeat_count++] = read_factor(reader, node, (RepeatKind)kind);
     }
 }
 
@@ -173,13 +172,14 @@ void level_read_repeat(LevelReader *reader, const TomlNode *node, Blueprint *blu
     blueprint->copy_count = (u32)product;
 }
 
-// Offset and rotation of copy i of one factor. Rings start at +x (about x: at +y) and go against the
-// clock seen from the axis' end.
+// Offset and rotation of copy i of one factor. Rings start at +x (about x: at +y) and go against
+// the clock seen from the axis' end.
 static Vec3 place_factor(const LevelRepeat *repeat, u32 i, u32 factor, u64 seed, u64 stream,
                          Vec3 *rotation_deg) {
     *rotation_deg = (Vec3){0};
     switch (repeat->kind) {
-    case REPEAT_ROW: return vec3_scale(repeat->a, (f32)i);
+    case REPEAT_ROW:
+        return vec3_scale(repeat->a, (f32)i);
     case REPEAT_GRID:
         return vec3(repeat->a.x * (f32)(i % repeat->counts[0]),
                     repeat->a.y * (f32)(i / repeat->counts[0] % repeat->counts[1]),
@@ -229,8 +229,8 @@ LevelPlacement level_place_copy(const LevelRepeat *repeats, u32 repeat_count, u3
         placement.is_rotated = true;
         placement.is_yaw_only &= repeat->axis == 1;
         placement.yaw_deg += rotation_deg.y;
-        placement.rotation =
-            mat34_mul(placement.rotation, mat34_from_trs(vec3(0, 0, 0), rotation_deg, vec3(1, 1, 1)));
+        placement.rotation = mat34_mul(placement.rotation,
+                                       mat34_from_trs(vec3(0, 0, 0), rotation_deg, vec3(1, 1, 1)));
     }
     return placement;
 }

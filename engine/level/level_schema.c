@@ -1,8 +1,8 @@
 // level_schema.c: the level format as a JSON schema (draft 2020-12), for editors.
-// Data in: the registered components' column descriptions. Data out: JSON text: completion, hover texts,
-// ranges and words for every key that the reader takes. Called by `luz schema` and by a test that compares
-// it with data/level.schema.json. Does not: say what only the reader can know (names that exist, files
-// that are there).
+// Data in: the registered components' column descriptions. Data out: JSON text: completion, hover
+// texts, ranges and words for every key that the reader takes. Called by `luz schema` and by a test
+// that compares it with data/level.schema.json. Does not: say what only the reader can know (names
+// that exist, files that are there).
 #include "level_internal.h"
 #include "level_text.h"
 #include <stdio.h>
@@ -28,7 +28,8 @@ static const char common_defs[] =
     "\"start\": {\"type\": \"number\", \"minimum\": -3600, \"maximum\": 3600, \"default\": 0, "
     "\"description\": \"deg\"}, \"face\": {\"type\": \"boolean\", \"default\": true, "
     "\"description\": \"each copy turns with its place\"}}},\n"
-    "    \"scatter\": {\"type\": \"object\", \"description\": \"copies at random places in a box\", "
+    "    \"scatter\": {\"type\": \"object\", \"description\": \"copies at random places in a "
+    "box\", "
     "\"additionalProperties\": false, \"required\": [\"count\", \"min\", \"max\"], "
     "\"properties\": {\"count\": {\"$ref\": \"#/$defs/count\"}, \"seed\": {\"type\": \"integer\"}, "
     "\"min\": {\"$ref\": \"#/$defs/vec3\"}, \"max\": {\"$ref\": \"#/$defs/vec3\"}}},\n"
@@ -45,7 +46,8 @@ static const char top_properties[] =
     "  \"prefab\": {\"type\": \"array\", \"description\": \"groups of entities\", \"items\": "
     "{\"type\": \"object\", \"additionalProperties\": false, \"required\": [\"name\", \"entity\"], "
     "\"properties\": {\"name\": {\"$ref\": \"#/$defs/name\"}, \"entity\": {\"type\": \"array\", "
-    "\"minItems\": 1, \"items\": {\"$ref\": \"#/$defs/entity\"}, \"description\": \"the first is the "
+    "\"minItems\": 1, \"items\": {\"$ref\": \"#/$defs/entity\"}, \"description\": \"the first is "
+    "the "
     "root\"}}}},\n"
     "  \"entity\": {\"type\": \"array\", \"description\": \"what is in the level\", \"items\": "
     "{\"$ref\": \"#/$defs/entity\"}}";
@@ -74,7 +76,9 @@ static void add_element(TextBuilder *text, const ColumnDesc *column) {
         text_add(text, "\"type\": \"integer\"");
         add_range(text, column);
         break;
-    case COLUMN_BOOL: text_add(text, "\"type\": \"boolean\""); break;
+    case COLUMN_BOOL:
+        text_add(text, "\"type\": \"boolean\"");
+        break;
     case COLUMN_ENUM: {
         const char *word;
         u32 length;
@@ -85,7 +89,9 @@ static void add_element(TextBuilder *text, const ColumnDesc *column) {
         break;
     }
     case COLUMN_ENTITY:
-    case COLUMN_TEXTURE: text_add(text, "\"type\": \"string\""); break;
+    case COLUMN_TEXTURE:
+        text_add(text, "\"type\": \"string\"");
+        break;
     case COLUMN_POINTS:
         text_add(text, "\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/vec3\"}");
         break;
@@ -95,18 +101,28 @@ static void add_element(TextBuilder *text, const ColumnDesc *column) {
 static void add_default(TextBuilder *text, const ColumnDesc *column) {
     const char *word = "";
     switch (column->type) {
-    case COLUMN_F32: text_add_number(text, (f32)column->initial, true); break;
+    case COLUMN_F32:
+        text_add_number(text, (f32)column->initial, true);
+        break;
     case COLUMN_U32:
-    case COLUMN_I32: text_add_number(text, column->initial, false); break;
-    case COLUMN_BOOL: text_add(text, column->initial != 0 ? "true" : "false"); break;
+    case COLUMN_I32:
+        text_add_number(text, column->initial, false);
+        break;
+    case COLUMN_BOOL:
+        text_add(text, column->initial != 0 ? "true" : "false");
+        break;
     case COLUMN_ENUM: {
         u32 length = level_word(column->unit, (u32)column->initial, &word);
         text_add(text, "\"%.*s\"", (int)length, word);
         break;
     }
     case COLUMN_ENTITY:
-    case COLUMN_TEXTURE: text_add(text, "\"\""); break;
-    case COLUMN_POINTS: text_add(text, "[]"); break;
+    case COLUMN_TEXTURE:
+        text_add(text, "\"\"");
+        break;
+    case COLUMN_POINTS:
+        text_add(text, "[]");
+        break;
     }
 }
 
@@ -148,7 +164,7 @@ static void add_key(TextBuilder *text, const LevelComponent *owner, const LevelK
     text_add(text, "%s, \"description\": ", key->count > 1 ? "]" : "");
     char help[256];
     bool is_words = column->type == COLUMN_ENUM;
-    const char *before = !column->unit[0] || is_words          ? ""
+    const char *before = !column->unit[0] || is_words     ? ""
                          : column->type == COLUMN_ENTITY  ? "name of an entity with "
                          : column->type == COLUMN_TEXTURE ? "path of an image, "
                                                           : "in ";
@@ -178,17 +194,19 @@ static void add_component(TextBuilder *text, const LevelComponent *owner, bool h
 }
 
 static void add_vary(TextBuilder *text, const LevelComponent *owner) {
-    text_add(text, "    \"%s\": {\"type\": \"object\", \"additionalProperties\": false, "
-                   "\"properties\": {\n",
+    text_add(text,
+             "    \"%s\": {\"type\": \"object\", \"additionalProperties\": false, "
+             "\"properties\": {\n",
              owner->desc->name);
     for (u32 i = 0; i < owner->key_count; i++) {
         const LevelKey *key = &owner->keys[i];
         const ColumnDesc *column = level_key_column(owner, key);
-        bool is_number = column->type == COLUMN_F32 || column->type == COLUMN_U32 ||
-                         column->type == COLUMN_I32;
-        text_add(text, "%s      \"%s\": {\"type\": \"object\", \"additionalProperties\": false, "
-                       "\"properties\": {\"choose\": {\"type\": \"array\", \"minItems\": 1, "
-                       "\"items\": {",
+        bool is_number =
+            column->type == COLUMN_F32 || column->type == COLUMN_U32 || column->type == COLUMN_I32;
+        text_add(text,
+                 "%s      \"%s\": {\"type\": \"object\", \"additionalProperties\": false, "
+                 "\"properties\": {\"choose\": {\"type\": \"array\", \"minItems\": 1, "
+                 "\"items\": {",
                  i ? ",\n" : "", key->name);
         add_type(text, owner, key);
         text_add(text, "}}");
@@ -211,18 +229,19 @@ static void add_vary(TextBuilder *text, const LevelComponent *owner) {
 }
 
 static void add_entity(TextBuilder *text, const LevelKeys *keys) {
-    text_add(text, "  \"entity\": {\"type\": \"object\", \"additionalProperties\": false, "
-                   "\"properties\": {\n"
-                   "    \"name\": {\"$ref\": \"#/$defs/name\", \"description\": \"unique among "
-                   "entities\"},\n"
-                   "    \"prefab\": {\"type\": \"string\", \"description\": \"name of a prefab; own "
-                   "values override those of its root\"},\n"
-                   "    \"parent\": {\"type\": \"string\", \"description\": \"transform is relative "
-                   "to the entity of this name\"},\n"
-                   "    \"repeat\": {\"anyOf\": [{\"$ref\": \"#/$defs/repeat\"}, {\"type\": "
-                   "\"array\", \"items\": {\"$ref\": \"#/$defs/repeat\"}}], \"description\": "
-                   "\"copies; a list is a product, the first outermost\"},\n"
-                   "    \"vary\": {\"$ref\": \"#/$defs/vary\"}");
+    text_add(text,
+             "  \"entity\": {\"type\": \"object\", \"additionalProperties\": false, "
+             "\"properties\": {\n"
+             "    \"name\": {\"$ref\": \"#/$defs/name\", \"description\": \"unique among "
+             "entities\"},\n"
+             "    \"prefab\": {\"type\": \"string\", \"description\": \"name of a prefab; own "
+             "values override those of its root\"},\n"
+             "    \"parent\": {\"type\": \"string\", \"description\": \"transform is relative "
+             "to the entity of this name\"},\n"
+             "    \"repeat\": {\"anyOf\": [{\"$ref\": \"#/$defs/repeat\"}, {\"type\": "
+             "\"array\", \"items\": {\"$ref\": \"#/$defs/repeat\"}}], \"description\": "
+             "\"copies; a list is a product, the first outermost\"},\n"
+             "    \"vary\": {\"$ref\": \"#/$defs/vary\"}");
     for (u32 i = 0; i < keys->count; i++)
         if (level_is_entity_component(keys, i))
             text_add(text, ",\n    \"%s\": {\"$ref\": \"#/$defs/component_%s\"}",
@@ -232,8 +251,9 @@ static void add_entity(TextBuilder *text, const LevelKeys *keys) {
 
 static void add_defs(TextBuilder *text, const LevelKeys *keys) {
     text_add(text, "\"$defs\": {\n%s", common_defs);
-    text_add(text, "  \"vary\": {\"type\": \"object\", \"description\": \"values that differ from copy "
-                   "to copy\", \"additionalProperties\": false, \"properties\": {\n");
+    text_add(text,
+             "  \"vary\": {\"type\": \"object\", \"description\": \"values that differ from copy "
+             "to copy\", \"additionalProperties\": false, \"properties\": {\n");
     bool is_first = true;
     for (u32 i = 0; i < keys->count; i++) {
         if (!level_is_entity_component(keys, i)) continue;
@@ -253,27 +273,28 @@ static void add_defs(TextBuilder *text, const LevelKeys *keys) {
 }
 
 static void add_model(TextBuilder *text) {
-    text_add(text, "  \"model\": {\"type\": \"array\", \"description\": \"model files and generated "
-                   "shapes\", \"items\": {\"type\": \"object\", \"additionalProperties\": false, "
-                   "\"required\": [\"name\"], \"oneOf\": [{\"required\": [\"file\"]}, {\"required\": "
-                   "[\"shape\"]}], \"properties\": {\n"
-                   "    \"name\": {\"$ref\": \"#/$defs/name\"},\n"
-                   "    \"file\": {\"type\": \"string\", \"description\": \"a .glb or .gltf file below "
-                   "the data root\"},\n"
-                   "    \"shape\": {\"enum\": [");
-    for (u32 i = 0; i < SHAPE_COUNT; i++)
-        text_add(text, "%s\"%s\"", i ? ", " : "", shape_names[i]);
-    text_add(text, "]},\n"
-                   "    \"segments\": {\"type\": \"integer\", \"minimum\": 0, \"maximum\": 512, "
-                   "\"description\": \"of a shape, around; 0 = 32\"},\n"
-                   "    \"rings\": {\"type\": \"integer\", \"minimum\": 0, \"maximum\": 512, "
-                   "\"description\": \"of a shape, along; 0 = half the segments\"},\n"
-                   "    \"tube\": {\"type\": \"number\", \"minimum\": 0.001, \"maximum\": 0.5, "
-                   "\"default\": 0.2, \"description\": \"torus: radius of the tube\"},\n"
-                   "    \"uv_repeat\": {\"type\": \"number\", \"minimum\": 0.001, \"maximum\": 1000, "
-                   "\"default\": 1, \"description\": \"texture repeats over the shape\"},\n"
-                   "    \"inverted\": {\"type\": \"boolean\", \"default\": false, \"description\": "
-                   "\"faces look inwards\"}}}},\n");
+    text_add(text,
+             "  \"model\": {\"type\": \"array\", \"description\": \"model files and generated "
+             "shapes\", \"items\": {\"type\": \"object\", \"additionalProperties\": false, "
+             "\"required\": [\"name\"], \"oneOf\": [{\"required\": [\"file\"]}, {\"required\": "
+             "[\"shape\"]}], \"properties\": {\n"
+             "    \"name\": {\"$ref\": \"#/$defs/name\"},\n"
+             "    \"file\": {\"type\": \"string\", \"description\": \"a .glb or .gltf file below "
+             "the data root\"},\n"
+             "    \"shape\": {\"enum\": [");
+    for (u32 i = 0; i < SHAPE_COUNT; i++) text_add(text, "%s\"%s\"", i ? ", " : "", shape_names[i]);
+    text_add(text,
+             "]},\n"
+             "    \"segments\": {\"type\": \"integer\", \"minimum\": 0, \"maximum\": 512, "
+             "\"description\": \"of a shape, around; 0 = 32\"},\n"
+             "    \"rings\": {\"type\": \"integer\", \"minimum\": 0, \"maximum\": 512, "
+             "\"description\": \"of a shape, along; 0 = half the segments\"},\n"
+             "    \"tube\": {\"type\": \"number\", \"minimum\": 0.001, \"maximum\": 0.5, "
+             "\"default\": 0.2, \"description\": \"torus: radius of the tube\"},\n"
+             "    \"uv_repeat\": {\"type\": \"number\", \"minimum\": 0.001, \"maximum\": 1000, "
+             "\"default\": 1, \"description\": \"texture repeats over the shape\"},\n"
+             "    \"inverted\": {\"type\": \"boolean\", \"default\": false, \"description\": "
+             "\"faces look inwards\"}}}},\n");
 }
 
 const char *level_schema(const World *world, Arena *arena) {
@@ -282,10 +303,11 @@ const char *level_schema(const World *world, Arena *arena) {
     LevelKeys keys;
     level_keys_create(&keys, world, &scratch);
     TextBuilder text = {0};
-    text_add(&text, "{\n\"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
-                    "\"title\": \"luz level\",\n\"description\": \"Metres, degrees, seconds; linear "
-                    "colour or #rrggbb.\",\n\"type\": \"object\",\n\"additionalProperties\": false,\n"
-                    "\"properties\": {\n");
+    text_add(&text,
+             "{\n\"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
+             "\"title\": \"luz level\",\n\"description\": \"Metres, degrees, seconds; linear "
+             "colour or #rrggbb.\",\n\"type\": \"object\",\n\"additionalProperties\": false,\n"
+             "\"properties\": {\n");
     for (u32 i = 0; i < keys.count; i++) {
         const ComponentDesc *desc = keys.components[i].desc;
         if (!desc->singleton) continue;

@@ -1,12 +1,14 @@
 // level_spawn.c: blueprints to entities and rows; then references, cycles of parents, drawables.
-// Data in: the reader's blueprints and prefabs, models and materials already in the world. Data out:
-// rows, in an order that is a function of the file alone: entities as written, copies after each other,
-// a prefab's entities after their root. So text that level_write makes of a loaded level spawns the same
-// handles and rows again. Called by level_read.c; level_spawn_drawables also by games while they run.
-// Does not: stop at a mistake; the world of a level with errors is thrown away by the caller.
+// Data in: the reader's blueprints and prefabs, models and materials already in the world. Data
+// out: rows, in an order that is a function of the file alone: entities as written, copies after
+// each other, a prefab's entities after their root. So text that level_write makes of a loaded
+// level spawns the same handles and rows again. Called by level_read.c; level_spawn_drawables also
+// by games while they run. Does not: stop at a mistake; the world of a level with errors is thrown
+// away by the caller.
 //
 // Material of a drawable: that of the instance if it has one; else of the model: its materials are
-// entities with consecutive indices, so part.material is added to the index of model.first_material.
+// entities with consecutive indices, so part.material is added to the index of
+// model.first_material.
 #include "level_internal.h"
 #include "../base/hash.h"
 #include <stdio.h>
@@ -15,8 +17,8 @@
 static u32 point_list(LevelReader *reader, u32 index) {
     LevelPoints *points = &reader->points[index];
     if (points->list) return points->list;
-    // Equal lists are one, so that ids depend on what is used and not on how it is written. They are
-    // found by the hash of their content, as a name.
+    // Equal lists are one, so that ids depend on what is used and not on how it is written. They
+    // are found by the hash of their content, as a name.
     u64 size = (u64)points->count * 3 * sizeof(f32);
     const char *name = arena_format(&reader->scratch, "%u:%016llx", points->count,
                                     (unsigned long long)hash_bytes(points->xyz, size, 0));
@@ -31,8 +33,8 @@ static u32 point_list(LevelReader *reader, u32 index) {
     return points->list;
 }
 
-void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column, LevelValueKind kind,
-                  u32 bits) {
+void level_assign(LevelReader *reader, Entity entity, u32 component, u32 column,
+                  LevelValueKind kind, u32 bits) {
     Table *table = reader->world->tables[component];
     u32 row = table_row(table, entity);
     u32 *cells = table_columns(table)[column];
@@ -186,8 +188,8 @@ static Entity spawn_copies(LevelReader *reader, Blueprint *blueprint, const char
         apply_values(reader, blueprint, entity, stream, copy);
         if (components >> COMPONENT_instance & 1) check_instance(reader, blueprint, pending_first);
         if (blueprint->repeat_count > 0) {
-            LevelPlacement placement = level_place_copy(
-                blueprint->repeats, blueprint->repeat_count, copy, world->seed, stream);
+            LevelPlacement placement = level_place_copy(blueprint->repeats, blueprint->repeat_count,
+                                                        copy, world->seed, stream);
             apply_placement(world, entity, &placement);
         }
         TransformTable *transforms = WORLD_TABLE(world, Transform, transform);
@@ -257,8 +259,7 @@ static void settle_references(LevelReader *reader) {
 static u32 load_texture(LevelReader *reader, LevelTexture *texture) {
     if (texture->is_loaded) return texture->id;
     texture->is_loaded = true;
-    texture->id =
-        asset_load_texture(reader->store, reader->root, texture->path, texture->kind);
+    texture->id = asset_load_texture(reader->store, reader->root, texture->path, texture->kind);
     if (texture->id <= 1) // 1 is the checker for damaged images
         level_error(reader, texture->place, NULL, "%s: '%s' is damaged or not an image",
                     texture->label, texture->path);

@@ -1,5 +1,6 @@
 // level_text.c: a growing text. Data in: pieces. Data out: one zero-terminated string in an arena.
-// Called by level_write.c, level_schema.c, level_format.c. Does not: know TOML or JSON beyond quotes.
+// Called by level_write.c, level_schema.c, level_format.c. Does not: know TOML or JSON beyond
+// quotes.
 #include "level_text.h"
 #include <stdarg.h>
 #include <stdio.h>

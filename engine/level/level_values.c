@@ -44,12 +44,12 @@ bool level_is_table_list(LevelReader *reader, const TomlNode *node, const char *
     return is_good;
 }
 
-// The range is checked in the column's own precision, so that what level_write prints for a value on
-// the border is inside.
+// The range is checked in the column's own precision, so that what level_write prints for a value
+// on the border is inside.
 static bool check_range(LevelReader *reader, const TomlNode *node, const char *label, f64 value,
                         f64 min, f64 max, bool is_f32) {
-    bool is_inside = is_f32 ? (f32)value >= (f32)min && (f32)value <= (f32)max
-                            : value >= min && value <= max;
+    bool is_inside =
+        is_f32 ? (f32)value >= (f32)min && (f32)value <= (f32)max : value >= min && value <= max;
     if (is_inside) return true;
     level_error(reader, node->place, NULL, "%s: %.9g is out of range %g to %g", label, value, min,
                 max);
@@ -239,12 +239,15 @@ static bool read_reference(LevelReader *reader, const TomlNode *node, const char
     if (name[0] == 0) return true; // "" = none: bits 0
     out->kind = VALUE_REFERENCE;
     out->bits[0] = reader->reference_count;
-    u32 component = column->unit[0] ? level_find_component(&reader->keys, column->unit)
-                                    : COMPONENT_ANY;
+    u32 component =
+        column->unit[0] ? level_find_component(&reader->keys, column->unit) : COMPONENT_ANY;
     LEVEL_APPEND(&reader->scratch, reader->references, reader->reference_count,
                  reader->reference_cap,
-                 (LevelReference){.name = name, .place = node->place, .component = component,
-                                  .prefab = prefab, .local = UINT32_MAX});
+                 (LevelReference){.name = name,
+                                  .place = node->place,
+                                  .component = component,
+                                  .prefab = prefab,
+                                  .local = UINT32_MAX});
     return true;
 }
 
@@ -268,8 +271,8 @@ static bool read_points(LevelReader *reader, const TomlNode *node, const char *l
                         const ColumnDesc *column, LevelValue *out) {
     if (!expect(reader, node, label, TOML_ARRAY, "a list of points [[x, y, z], ...]")) return false;
     if (node->count > LEVEL_POINTS_MAX) {
-        level_error(reader, node->place, NULL, "%s: %u points, the limit is %u", label,
-                    node->count, LEVEL_POINTS_MAX);
+        level_error(reader, node->place, NULL, "%s: %u points, the limit is %u", label, node->count,
+                    LEVEL_POINTS_MAX);
         return false;
     }
     if (node->count == 0) return true; // [] = none: bits 0
@@ -318,10 +321,12 @@ static bool read_scalar(LevelReader *reader, const TomlNode *node, const char *l
         if (!level_read_bool(reader, node, label, &boolean)) return false;
         *bits = boolean;
         return true;
-    case COLUMN_ENUM: return read_enum(reader, node, label, column, bits);
+    case COLUMN_ENUM:
+        return read_enum(reader, node, label, column, bits);
     case COLUMN_ENTITY:
     case COLUMN_TEXTURE:
-    case COLUMN_POINTS: break;
+    case COLUMN_POINTS:
+        break;
     }
     return false;
 }

@@ -1,8 +1,8 @@
 // level_vary.c: values that differ from copy to copy.
-// Data in: the node of an entity's `vary`. Data out: the blueprint's list of varied keys, and later the
-// value of each copy. Called by level_entities.c (read) and level_spawn.c (draw). A draw is a pure
-// function of the level's seed, the entity's own name (or number), the key and the copy: entities, keys
-// and copies that come or go elsewhere change nothing here.
+// Data in: the node of an entity's `vary`. Data out: the blueprint's list of varied keys, and later
+// the value of each copy. Called by level_entities.c (read) and level_spawn.c (draw). A draw is a
+// pure function of the level's seed, the entity's own name (or number), the key and the copy:
+// entities, keys and copies that come or go elsewhere change nothing here.
 #include "level_internal.h"
 #include "../base/hash.h"
 #include "../base/random.h"
@@ -22,11 +22,11 @@ static f64 number_of_bits(ColumnType type, u32 bits) {
     return value;
 }
 
-static void read_choices(LevelReader *reader, const TomlNode *node, const char *label, u32 component,
-                         const LevelKey *key, u32 prefab, LevelVary *vary) {
+static void read_choices(LevelReader *reader, const TomlNode *node, const char *label,
+                         u32 component, const LevelKey *key, u32 prefab, LevelVary *vary) {
     if (node->type != TOML_ARRAY || node->count == 0) {
-        level_error(reader, node->place, NULL, "%s.choose: expected a list of values, got %s", label,
-                    node->type == TOML_ARRAY ? "an empty one" : toml_type_name(node->type));
+        level_error(reader, node->place, NULL, "%s.choose: expected a list of values, got %s",
+                    label, node->type == TOML_ARRAY ? "an empty one" : toml_type_name(node->type));
         return;
     }
     LevelValue *choices = ARENA_PUSH(&reader->scratch, LevelValue, node->count);
@@ -57,7 +57,8 @@ static void read_range(LevelReader *reader, const TomlNode *table, const TomlNod
                        const TomlNode *max, const char *label, u32 component, const LevelKey *key,
                        LevelVary *vary) {
     if (!min || !max) {
-        level_error(reader, table->key_place, NULL, "%s: needs 'choose', or 'min' and 'max'", label);
+        level_error(reader, table->key_place, NULL, "%s: needs 'choose', or 'min' and 'max'",
+                    label);
         return;
     }
     if (!is_number(vary->type)) {
@@ -179,7 +180,7 @@ LevelValue level_draw_vary(const LevelVary *vary, u64 seed, u64 stream, u32 copy
     }
     LevelValue value = {.kind = VALUE_BITS, .count = vary->count};
     for (u32 i = 0; i < vary->count; i++)
-        value.bits[i] =
-            draw_number(vary, i, random_u64(seed, key_stream, counter + (vary->is_uniform ? 0 : i)));
+        value.bits[i] = draw_number(
+            vary, i, random_u64(seed, key_stream, counter + (vary->is_uniform ? 0 : i)));
     return value;
 }

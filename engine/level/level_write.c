@@ -1,8 +1,9 @@
 // level_write.c: a world back to level text.
-// Data in: rows. Data out: text that loads to the same handles, rows and hash (of a world that came from
-// a level; derived columns start again at their defaults). Called by the tools and the editor's save.
-// Does not: write what loading makes by itself (drawables, models' own materials: only what differs from
-// the file's), nor prefabs, repetition, titles and comments: the world does not have them any more.
+// Data in: rows. Data out: text that loads to the same handles, rows and hash (of a world that came
+// from a level; derived columns start again at their defaults). Called by the tools and the
+// editor's save. Does not: write what loading makes by itself (drawables, models' own materials:
+// only what differs from the file's), nor prefabs, repetition, titles and comments: the world does
+// not have them any more.
 #include "level_internal.h"
 #include "level_text.h"
 #include <stdio.h>
@@ -15,7 +16,7 @@ typedef struct LevelWriter {
     Arena scratch;
     LevelKeys keys;
     LevelNames names;
-    const char **name_of; // by entity index; "" = has none and needs none
+    const char **name_of;  // by entity index; "" = has none and needs none
     u8 *is_model_material; // by entity index
     TextBuilder text;
 } LevelWriter;
@@ -141,19 +142,24 @@ static void add_cell(LevelWriter *writer, const ColumnDesc *column, u32 bits) {
     case COLUMN_I32:
         text_add_number(text, number_of(column->type, bits), column->type == COLUMN_F32);
         break;
-    case COLUMN_BOOL: text_add(text, bits ? "true" : "false"); break;
+    case COLUMN_BOOL:
+        text_add(text, bits ? "true" : "false");
+        break;
     case COLUMN_ENUM: {
         u32 length = level_word(column->unit, bits, &word);
         text_add(text, "\"%.*s\"", (int)length, word);
         break;
     }
     case COLUMN_ENTITY:
-        text_add_quoted(text, world_alive(writer->world, bits)
-                                  ? writer->name_of[ENTITY_INDEX(bits)]
-                                  : "");
+        text_add_quoted(text, world_alive(writer->world, bits) ? writer->name_of[ENTITY_INDEX(bits)]
+                                                               : "");
         break;
-    case COLUMN_TEXTURE: text_add_quoted(text, asset_texture_path(writer->store, bits)); break;
-    case COLUMN_POINTS: add_points(writer, bits); break;
+    case COLUMN_TEXTURE:
+        text_add_quoted(text, asset_texture_path(writer->store, bits));
+        break;
+    case COLUMN_POINTS:
+        add_points(writer, bits);
+        break;
     }
 }
 
@@ -166,8 +172,8 @@ static bool can_write(const LevelWriter *writer, const ColumnDesc *column, u32 b
     return true;
 }
 
-// Keys of one row that differ from `base` (bits per column), or from the defaults if NULL. Returns how
-// many there were.
+// Keys of one row that differ from `base` (bits per column), or from the defaults if NULL. Returns
+// how many there were.
 static u32 add_keys(LevelWriter *writer, u32 component, u32 row, const char *prefix,
                     const u32 *base) {
     const LevelComponent *owner = &writer->keys.components[component];
@@ -204,8 +210,8 @@ static void write_singletons(LevelWriter *writer) {
     }
 }
 
-// The store knows a model by its path, or by its shape's parameters: "shape:torus segments=32 rings=16
-// tube=0.2 uv=1 inverted" (shapes.c).
+// The store knows a model by its path, or by its shape's parameters: "shape:torus segments=32
+// rings=16 tube=0.2 uv=1 inverted" (shapes.c).
 static void write_model(LevelWriter *writer, Entity entity, const Model *model) {
     TextBuilder *text = &writer->text;
     text_add(text, "\n[[model]]\nname = ");
@@ -236,8 +242,8 @@ static void write_model(LevelWriter *writer, Entity entity, const Model *model) 
     if (inverted[0]) text_add(text, "inverted = true\n");
 }
 
-// Of a model's own material only what differs from the file. `plain` is an empty world to fill its row
-// in the same way as loading does.
+// Of a model's own material only what differs from the file. `plain` is an empty world to fill its
+// row in the same way as loading does.
 static void write_overrides(LevelWriter *writer, World *plain, Entity material,
                             const ModelMaterial *source) {
     MaterialTable *table = WORLD_TABLE(plain, Material, material);

@@ -1,7 +1,7 @@
 // suggest.c: edit distance and the choice of the nearest word.
-// Data in: a wrong word and candidates. Data out: the nearest one, if it is near enough to be meant.
-// Called by the level readers for every unknown key, word and name. Does not: allocate, or look at
-// words longer than SUGGEST_WORD_MAX (the cost of a hostile file stays bounded).
+// Data in: a wrong word and candidates. Data out: the nearest one, if it is near enough to be
+// meant. Called by the level readers for every unknown key, word and name. Does not: allocate, or
+// look at words longer than SUGGEST_WORD_MAX (the cost of a hostile file stays bounded).
 #include "suggest.h"
 #include <stdio.h>
 #include <string.h>

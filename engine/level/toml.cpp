@@ -258,7 +258,8 @@ extern "C" bool toml_parse(const char *text, u64 size, Arena *arena, TomlNode **
         list_lines(source);
         set_error(error, source, e.region, e.text);
     } catch (const ArenaFull &) {
-        std::snprintf(error->text, sizeof error->text, "the file has more values than memory allows");
+        std::snprintf(error->text, sizeof error->text,
+                      "the file has more values than memory allows");
     } catch (const std::exception &e) {
         std::snprintf(error->text, sizeof error->text, "the file cannot be parsed: %s", e.what());
     }

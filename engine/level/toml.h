@@ -3,7 +3,8 @@
 // Data in: text from a stranger. Data out: nodes in an arena, each with the place of its key and of
 // its value, so that every later check can point at the text. Called by level_read.c and
 // level_format.c. The parser behind it is toml++ (toml.cpp is the only C++ of this folder); nothing
-// of it shows here. Does not: write TOML, keep comments, or report more than the first syntax error.
+// of it shows here. Does not: write TOML, keep comments, or report more than the first syntax
+// error.
 #ifndef LUZ_TOML_H
 #define LUZ_TOML_H
 #include "../base/arena.h"
@@ -33,10 +34,10 @@ typedef struct TomlPlace {
 
 typedef struct TomlNode {
     TomlType type;
-    u32 count;         // of children
-    const char *key;   // in tables, zero-terminated; NULL in arrays
+    u32 count;       // of children
+    const char *key; // in tables, zero-terminated; NULL in arrays
     TomlPlace key_place;
-    TomlPlace place;   // of the value; of a [table] or [[table]] its header
+    TomlPlace place; // of the value; of a [table] or [[table]] its header
     union {
         const char *string; // zero-terminated, UTF-8, without zero bytes inside
         i64 integer;

@@ -12,7 +12,8 @@
 //   mkdir -p corpus && cp ../../data/levels/*.toml corpus/
 //   LUZ_LOG=none ASAN_OPTIONS=detect_leaks=0 ./level_fuzz -max_len=4096 -timeout=10 corpus
 //
-// Text reaches level_load through a file in memory (/dev/shm), because it reads files and nothing else.
+// Text reaches level_load through a file in memory (/dev/shm), because it reads files and nothing
+// else.
 #include "../../engine/level/level.h"
 #include "../../engine/level/level_format.h"
 #include <stdio.h>

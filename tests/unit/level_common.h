@@ -1,5 +1,5 @@
-// level_common.h: what the tests of engine/level share: a level from a string, loaded into a world that
-// also has two components of a game. Data in: text. Data out: world, store, diagnostics.
+// level_common.h: what the tests of engine/level share: a level from a string, loaded into a world
+// that also has two components of a game. Data in: text. Data out: world, store, diagnostics.
 #ifndef LUZ_TEST_LEVEL_COMMON_H
 #define LUZ_TEST_LEVEL_COMMON_H
 #include "../test.h"
@@ -10,12 +10,12 @@
 // The demo's own door is linked into the tests, too.
 #define door_component test_door_component
 
-#define DOOR_COLUMNS(C)                                                                  \
-    C(F32, angle_max, "deg", 90, "angle", 0, 180, "how far it opens")                    \
-    C(ENTITY, lamp, "light", 0, "lamp", 0, 0, "goes on when it opens")                   \
-    C(ENTITY, other, "", 0, "other", 0, 0, "anything")                                   \
-    C(I32, offset, "", -3, "offset", -10, 10, "a signed number")                         \
-    C(U32, lock, "", 2, "lock", 0, 100, "which key opens it")                            \
+#define DOOR_COLUMNS(C)                                                                            \
+    C(F32, angle_max, "deg", 90, "angle", 0, 180, "how far it opens")                              \
+    C(ENTITY, lamp, "light", 0, "lamp", 0, 0, "goes on when it opens")                             \
+    C(ENTITY, other, "", 0, "other", 0, 0, "anything")                                             \
+    C(I32, offset, "", -3, "offset", -10, 10, "a signed number")                                   \
+    C(U32, lock, "", 2, "lock", 0, 100, "which key opens it")                                      \
     C(ENUM, state, "closed opening open", 0, "", 0, 2, "what it does")
 #define RULES_COLUMNS(C) C(F32, limit, "s", 60, "limit", 1, 1000, "time to win")
 TABLE_STRUCT(Door, DOOR_COLUMNS);

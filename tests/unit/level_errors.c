@@ -13,69 +13,70 @@ typedef struct Mistake {
 // Every line's expected place is written by hand: the test would not notice a wrong one otherwise.
 static const char many_mistakes[] =
     /*  1 */ "[levle]\n"
-    /*  2 */ "[level]\n"
-    /*  3 */ "titel = \"x\"\n"
-    /*  4 */ "seed = 1.5\n"
-    /*  5 */ "[environment]\n"
-    /*  6 */ "ambient = \"#12345\"\n"
-    /*  7 */ "exposure = -1\n"
-    /*  8 */ "attenuation = \"inverse_squared\"\n"
-    /*  9 */ "shadow_size = 8192\n"
-    /* 10 */ "[[model]]\n"
-    /* 11 */ "name = \"ball\"\n"
-    /* 12 */ "shape = \"shpere\"\n"
-    /* 13 */ "[[model]]\n"
-    /* 14 */ "name = \"ball\"\n"
-    /* 15 */ "shape = \"cube\"\n"
-    /* 16 */ "[[model]]\n"
-    /* 17 */ "name = \"away\"\n"
-    /* 18 */ "file = \"../secret.glb\"\n"
-    /* 19 */ "[[model]]\n"
-    /* 20 */ "name = \"none\"\n"
-    /* 21 */ "file = \"models/none.glb\"\n"
-    /* 22 */ "[[model]]\n"
-    /* 23 */ "name = \"empty\"\n"
-    /* 24 */ "[[material]]\n"
-    /* 25 */ "albedo = [0.5, 0.5]\n"
-    /* 26 */ "[[material]]\n"
-    /* 27 */ "name = \"m\"\n"
-    /* 28 */ "albedo_texture = \"none.png\"\n"
-    /* 29 */ "albedo = [0.5, 2, 0.5]\n"
-    /* 30 */ "double_sided = 1\n"
-    /* 31 */ "[[prefab]]\n"
-    /* 32 */ "name = \"p\"\n"
-    /* 33 */ "[[prefab.entity]]\n"
-    /* 34 */ "name = \"root\"\n"
-    /* 35 */ "[[prefab.entity]]\n"
-    /* 36 */ "parent = \"rot\"\n"
-    /* 37 */ "[[prefab.entity]]\n"
-    /* 38 */ "prefab = \"p\"\n"
-    /* 39 */ "[[entity]]\n"
-    /* 40 */ "name = \"a\"\n"
-    /* 41 */ "light = { intensty = 5, kind = \"spto\" }\n"
-    /* 42 */ "transform.position = \"here\"\n"
-    /* 43 */ "transform.rotation = [1, 2, 3, 4]\n"
-    /* 44 */ "lihgt.range = 3\n"
-    /* 45 */ "instance.model = \"bal\"\n"
-    /* 46 */ "prefab = \"q\"\n"
-    /* 47 */ "parent = \"b\"\n"
-    /* 48 */ "[[entity]]\n"
-    /* 49 */ "name = \"a\"\n"
-    /* 50 */ "parent = \"nobody\"\n"
-    /* 51 */ "door = { lamp = \"c\", lock = 101, offset = \"x\" }\n"
-    /* 52 */ "[[entity]]\n"
-    /* 53 */ "name = \"b\"\n"
-    /* 54 */ "parent = \"a\"\n"
-    /* 55 */ "repeat = { row = { count = 0, step = [1, 0, 0] }, rng = {} }\n"
-    /* 56 */ "[[entity]]\n"
-    /* 57 */ "name = \"c\"\n"
-    /* 58 */ "repeat.ring = { count = 3 }\n"
-    /* 59 */ "vary = { light.color = { chose = [] }, orbit.phase = { min = 9, max = 1 } }\n"
-    /* 60 */ "position = [0, 0, 0]\n"
-    /* 61 */ "walker = true\n"
-    /* 62 */ "environment = {}\n"
-    /* 63 */ "light.color = \"é\"  \n"
-    /* 64 */ "path.points = [[0, 0, 0], [1, 2]]\n";
+             /*  2 */ "[level]\n"
+             /*  3 */ "titel = \"x\"\n"
+             /*  4 */ "seed = 1.5\n"
+             /*  5 */ "[environment]\n"
+             /*  6 */ "ambient = \"#12345\"\n"
+             /*  7 */ "exposure = -1\n"
+             /*  8 */ "attenuation = \"inverse_squared\"\n"
+             /*  9 */ "shadow_size = 8192\n"
+             /* 10 */ "[[model]]\n"
+             /* 11 */ "name = \"ball\"\n"
+             /* 12 */ "shape = \"shpere\"\n"
+             /* 13 */ "[[model]]\n"
+             /* 14 */ "name = \"ball\"\n"
+             /* 15 */ "shape = \"cube\"\n"
+             /* 16 */ "[[model]]\n"
+             /* 17 */ "name = \"away\"\n"
+             /* 18 */ "file = \"../secret.glb\"\n"
+             /* 19 */ "[[model]]\n"
+             /* 20 */ "name = \"none\"\n"
+             /* 21 */ "file = \"models/none.glb\"\n"
+             /* 22 */ "[[model]]\n"
+             /* 23 */ "name = \"empty\"\n"
+             /* 24 */ "[[material]]\n"
+             /* 25 */ "albedo = [0.5, 0.5]\n"
+             /* 26 */ "[[material]]\n"
+             /* 27 */ "name = \"m\"\n"
+             /* 28 */ "albedo_texture = \"none.png\"\n"
+             /* 29 */ "albedo = [0.5, 2, 0.5]\n"
+             /* 30 */ "double_sided = 1\n"
+             /* 31 */ "[[prefab]]\n"
+             /* 32 */ "name = \"p\"\n"
+             /* 33 */ "[[prefab.entity]]\n"
+             /* 34 */ "name = \"root\"\n"
+             /* 35 */ "[[prefab.entity]]\n"
+             /* 36 */ "parent = \"rot\"\n"
+             /* 37 */ "[[prefab.entity]]\n"
+             /* 38 */ "prefab = \"p\"\n"
+             /* 39 */ "[[entity]]\n"
+             /* 40 */ "name = \"a\"\n"
+             /* 41 */ "light = { intensty = 5, kind = \"spto\" }\n"
+             /* 42 */ "transform.position = \"here\"\n"
+             /* 43 */ "transform.rotation = [1, 2, 3, 4]\n"
+             /* 44 */ "lihgt.range = 3\n"
+             /* 45 */ "instance.model = \"bal\"\n"
+             /* 46 */ "prefab = \"q\"\n"
+             /* 47 */ "parent = \"b\"\n"
+             /* 48 */ "[[entity]]\n"
+             /* 49 */ "name = \"a\"\n"
+             /* 50 */ "parent = \"nobody\"\n"
+             /* 51 */ "door = { lamp = \"c\", lock = 101, offset = \"x\" }\n"
+             /* 52 */ "[[entity]]\n"
+             /* 53 */ "name = \"b\"\n"
+             /* 54 */ "parent = \"a\"\n"
+             /* 55 */ "repeat = { row = { count = 0, step = [1, 0, 0] }, rng = {} }\n"
+             /* 56 */ "[[entity]]\n"
+             /* 57 */ "name = \"c\"\n"
+             /* 58 */ "repeat.ring = { count = 3 }\n"
+             /* 59 */ "vary = { light.color = { chose = [] }, orbit.phase = { min = 9, max = 1 } "
+                      "}\n"
+             /* 60 */ "position = [0, 0, 0]\n"
+             /* 61 */ "walker = true\n"
+             /* 62 */ "environment = {}\n"
+             /* 63 */ "light.color = \"é\"  \n"
+             /* 64 */ "path.points = [[0, 0, 0], [1, 2]]\n";
 
 static const Mistake mistakes[] = {
     {"", 1, 2, "unknown table 'levle'", "did you mean 'level'?"},
@@ -173,7 +174,8 @@ static const Mistake single[] = {
     {"[[entity]]\ndoor.lock = 1.0\n", 2, 13, "door.lock: expected an integer", NULL},
     {"[[entity]]\ndoor.lamp = \"q\"\n[[entity]]\nname = \"q\"\n", 2, 13, "entity 'q' has no light",
      NULL},
-    {"[[entity]]\nname = \"a.1\"\n[[entity]]\nname = \"a\"\nrepeat.row = { count = 2, step = [0, 0, "
+    {"[[entity]]\nname = \"a.1\"\n[[entity]]\nname = \"a\"\nrepeat.row = { count = 2, step = [0, "
+     "0, "
      "1] }\n",
      4, 8, "an entity is already named 'a.1' (line 2)", NULL},
     {"[[entity]]\nrepeat.grid = { count = [100, 100, 100], step = [1, 1, 1] }\n", 2, 25,
@@ -188,7 +190,8 @@ static const Mistake single[] = {
      "scatter: min is above max", NULL},
     {"[[entity]]\nvary.instance.model = { min = 1, max = 2 }\n", 2, 25, "only numbers have a range",
      "choose"},
-    {"[[entity]]\nvary.camera.fov = { choose = [50, 500] }\n", 2, 35, "out of range 5 to 150", NULL},
+    {"[[entity]]\nvary.camera.fov = { choose = [50, 500] }\n", 2, 35, "out of range 5 to 150",
+     NULL},
     {"[[entity]]\nvary.camera.fov = 3\n", 2, 19, "vary.camera.fov: expected a table", "min"},
     {"[[prefab]]\nname = \"p\"\n", 1, 1, "the prefab has no entity", "[[prefab.entity]]"},
     {"[[prefab]]\nname = \"p\"\n[[prefab.entity]]\nparent = \"x\"\n", 4, 1,
@@ -260,7 +263,8 @@ TEST(level, caret_in_a_long_line) {
 
 TEST(level, unused_prefab_and_empty_instance_are_warnings) {
     TestLevel level;
-    test_level_load(&level, "[[prefab]]\nname = \"p\"\n[[prefab.entity]]\n[[entity]]\ninstance = {}\n");
+    test_level_load(&level,
+                    "[[prefab]]\nname = \"p\"\n[[prefab.entity]]\n[[entity]]\ninstance = {}\n");
     assert_true(level.is_good);
     assert_int_equal(level.diagnostics->warning_count, 2);
     assert_false(level.diagnostics->items[0].is_error);
@@ -314,7 +318,8 @@ TEST(level, absent_files_and_paths_that_climb) {
     assert_int_equal(symlink("/etc", test_temp_path("out")), 0);
     for (u32 i = 0; i < COUNT_OF(paths); i++) {
         char text[160];
-        snprintf(text, sizeof text, "[[material]]\nname = \"m\"\nalbedo_texture = \"%s\"\n", paths[i]);
+        snprintf(text, sizeof text, "[[material]]\nname = \"m\"\nalbedo_texture = \"%s\"\n",
+                 paths[i]);
         test_level_load(&level, text);
         assert_false(level.is_good);
         assert_int_equal(level.diagnostics->items[0].line, 3);

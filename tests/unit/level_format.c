@@ -25,7 +25,8 @@ TEST(level_format, spaces_indentation_and_blank_lines) {
            "[level]\nx.\"y z\".w = 1\n\n[[e.f]]\n\n[[e.f]]\n");
     expect("a={b=1,c=[ 1,2 ,[3]],d={},e=[{f='x'}]}\n",
            "a = { b = 1, c = [1, 2, [3]], d = {}, e = [{ f = 'x' }] }\n");
-    expect("a = [\n1,\n  # c\n\n\n[2,\n3],\n]\n", "a = [\n    1,\n    # c\n\n    [2,\n        3],\n]\n");
+    expect("a = [\n1,\n  # c\n\n\n[2,\n3],\n]\n",
+           "a = [\n    1,\n    # c\n\n    [2,\n        3],\n]\n");
     expect("t = 1979-05-27 07:32:00\nf = -1.5e+3\n", "t = 1979-05-27 07:32:00\nf = -1.5e+3\n");
 }
 
@@ -33,13 +34,15 @@ TEST(level_format, comments_stay_with_what_they_belong_to) {
     expect("# top\n# more\n[level]   \nseed=1# s\n# of the entity\n[[entity]]  # e\n",
            "# top\n# more\n[level]\nseed = 1 # s\n\n# of the entity\n[[entity]]  # e\n");
     expect("[a]\n# lone\n\n[b]\n", "[a]\n# lone\n\n[b]\n");
-    expect("[a]\nb = 1   # column\nc = 22  # column\n", "[a]\nb = 1   # column\nc = 22  # column\n");
+    expect("[a]\nb = 1   # column\nc = 22  # column\n",
+           "[a]\nb = 1   # column\nc = 22  # column\n");
     expect("   # only\n", "# only\n");
 }
 
 TEST(level_format, strings_are_untouched) {
-    static const char text[] = "a = \"  =  # [ \\\" \"\nb = '  \\'\nc = \"\"\"\n  x = [ \n\n\n  \\\"\"\" \"\"\"\n"
-                               "d = '''\n  # no comment  \n'''\n\"=#\" = 1\n";
+    static const char text[] =
+        "a = \"  =  # [ \\\" \"\nb = '  \\'\nc = \"\"\"\n  x = [ \n\n\n  \\\"\"\" \"\"\"\n"
+        "d = '''\n  # no comment  \n'''\n\"=#\" = 1\n";
     expect(text, text);
 }
 
@@ -47,7 +50,8 @@ TEST(level_format, refuses_what_is_not_toml) {
     Arena arena;
     assert_true(arena_create(&arena, "test", MIB(64)));
     const char *out = "x";
-    static const char *const bad[] = {"a = ", "[", "a = 1\na = 2\n", "a = [1,\n", "é = 1", "a b = 1"};
+    static const char *const bad[] = {"a = ",      "[",     "a = 1\na = 2\n",
+                                      "a = [1,\n", "é = 1", "a b = 1"};
     for (u32 i = 0; i < COUNT_OF(bad); i++) {
         assert_false(level_format_text(bad[i], &arena, &out));
         assert_null(out);
@@ -70,12 +74,56 @@ static void expect_equal(const TomlNode *a, const TomlNode *b) {
     assert_true(!x && !y);
 }
 
-// Text with random space where TOML allows it: same tree after formatting, same text whatever it was.
+// Text with random space where TOML allows it: same tree after formatting, same text whatever it
+// was.
 TEST(level_format, keeps_the_meaning_of_scrambled_text) {
-    static const char *const tokens[] = {
-        "# c\n", "[", "a", "]", "\n", "k", "=", "{", "x", ".", "y", "=", "1", ",", "z", "=", "[",
-        "1.5", ",", "'q # '", ",", "[", "true", "]", "]", "}", "\n", "m", "=", "[", "{", "v", "=",
-        "2", "}", ",", "\"\"\" a\n  b \"\"\"", "]", "\n", "[[", "l", "]]", "\n", "n", "=", "0x1F", "\n"};
+    static const char *const tokens[] = {"# c\n",
+                                         "[",
+                                         "a",
+                                         "]",
+                                         "\n",
+                                         "k",
+                                         "=",
+                                         "{",
+                                         "x",
+                                         ".",
+                                         "y",
+                                         "=",
+                                         "1",
+                                         ",",
+                                         "z",
+                                         "=",
+                                         "[",
+                                         "1.5",
+                                         ",",
+                                         "'q # '",
+                                         ",",
+                                         "[",
+                                         "true",
+                                         "]",
+                                         "]",
+                                         "}",
+                                         "\n",
+                                         "m",
+                                         "=",
+                                         "[",
+                                         "{",
+                                         "v",
+                                         "=",
+                                         "2",
+                                         "}",
+                                         ",",
+                                         "\"\"\" a\n  b \"\"\"",
+                                         "]",
+                                         "\n",
+                                         "[[",
+                                         "l",
+                                         "]]",
+                                         "\n",
+                                         "n",
+                                         "=",
+                                         "0x1F",
+                                         "\n"};
     Arena arena;
     assert_true(arena_create(&arena, "test", GIB(1)));
     char *first = NULL;
@@ -106,8 +154,9 @@ TEST(level_format, keeps_the_meaning_of_scrambled_text) {
 
 TEST(level_format, written_levels_are_already_in_form) {
     TestLevel level;
-    test_level_load_good(&level, "[[model]]\nname = \"a\"\nshape = \"torus\"\n[[entity]]\nname = \"x\"\n"
-                                 "instance.model = \"a\"\npath.points = [[1, 2, 3]]\nwalker = {}\n");
+    test_level_load_good(&level,
+                         "[[model]]\nname = \"a\"\nshape = \"torus\"\n[[entity]]\nname = \"x\"\n"
+                         "instance.model = \"a\"\npath.points = [[1, 2, 3]]\nwalker = {}\n");
     const char *out, *text = level_write(level.world, &level.store, &level.arena);
     assert_true(level_format_text(text, &level.arena, &out));
     assert_string_equal(out, text);

@@ -136,10 +136,11 @@ TEST(level, loads_every_feature) {
     assert_int_equal(d->material[0], m->table.entity[brass]);
     assert_int_equal(d->material[1],
                      m->table.entity[test_level_row(&level, COMPONENT_material, "ball/sphere")]);
-    assert_int_equal(d->mesh[1],
-                     level.store.models[models->model[test_level_row(&level, COMPONENT_model, "ball")]]
-                         .parts[0]
-                         .mesh);
+    assert_int_equal(
+        d->mesh[1],
+        level.store.models[models->model[test_level_row(&level, COMPONENT_model, "ball")]]
+            .parts[0]
+            .mesh);
     ASSERT_NEAR(d->l00[0], 1, 0);
     test_level_close(&level);
 }
@@ -284,8 +285,7 @@ TEST(level, names_of_each_kind_are_apart) {
     const InstanceTable *i = WORLD_TABLE(level.world, Instance, instance);
     assert_int_equal(i->model[0], WORLD_TABLE(level.world, Model, model)->table.entity[0]);
     u32 x = test_level_row(&level, COMPONENT_material, "x");
-    assert_int_equal(i->material[0],
-                     WORLD_TABLE(level.world, Material, material)->table.entity[x]);
+    assert_int_equal(i->material[0], WORLD_TABLE(level.world, Material, material)->table.entity[x]);
     test_level_close(&level);
 }
 

@@ -1,5 +1,6 @@
-// level_mutate.c: a few thousand damaged levels: each loads or is refused with diagnostics, nothing else.
-// Same text, same verdict; formatting what parses keeps its verdict. Fixed seed, so a failure repeats.
+// level_mutate.c: a few thousand damaged levels: each loads or is refused with diagnostics, nothing
+// else. Same text, same verdict; formatting what parses keeps its verdict. Fixed seed, so a failure
+// repeats.
 #include "level_common.h"
 #include "../../engine/base/log.h"
 #include "../../engine/base/random.h"
@@ -10,7 +11,8 @@
 static const char seed_text[] =
     "[level]\nseed = 7\ntitle = \"T\"\n[environment]\nambient = \"#0b1020\"\n"
     "[[model]]\nname = \"ball\"\nshape = \"cube\"\n"
-    "[[material]]\nname = \"brass\"\nalbedo = [0.4, 0.3, 0.1]\n[[material]]\nname = \"ball/cube\"\npower = 3\n"
+    "[[material]]\nname = \"brass\"\nalbedo = [0.4, 0.3, 0.1]\n[[material]]\nname = "
+    "\"ball/cube\"\npower = 3\n"
     "[[prefab]]\nname = \"lamp\"\n[[prefab.entity]]\ninstance.model = \"ball\"\n"
     "[[prefab.entity]]\nname = \"glow\"\nlight = { color = \"#fa4\", intensity = 5 }\n"
     "[[prefab.entity]]\nparent = \"glow\"\nprefab = \"bulb\"\n"
@@ -23,9 +25,10 @@ static const char seed_text[] =
     "[[entity]]\nname = \"c\"\nparent = \"a.1\"\npath.points = [[0, 0, 0], [1, 2, 3]]\n"
     "repeat.grid = { count = [2, 1, 2], step = [1, 1, 1] }\n";
 
-static const char *const words[] = {"\"", "[", "]", "{", "}", "=", ".", "\n", "#", "'", "\"\"\"", "[[",
-                                    "]]", "0", "-1", "1e9", "nan", "true", "é", "\\", "entity", "prefab",
-                                    "parent", "name", "\"a\"", "\"lamp\"", "\"bulb\"", "count", "99999"};
+static const char *const words[] = {
+    "\"",     "[",      "]",      "{",    "}",     "=",        ".",        "\n",    "#",    "'",
+    "\"\"\"", "[[",     "]]",     "0",    "-1",    "1e9",      "nan",      "true",  "é",    "\\",
+    "entity", "prefab", "parent", "name", "\"a\"", "\"lamp\"", "\"bulb\"", "count", "99999"};
 
 typedef struct Mutant {
     char *text;
@@ -59,8 +62,8 @@ static u32 find_run(const Mutant *m, u32 at, bool is_line, u32 *size) {
     return at;
 }
 
-// One damaged copy: 1 or 2 edits: a byte changed, a piece removed, something put in; a word put in the
-// place of another (mistakes of meaning, in good syntax); a line removed or moved.
+// One damaged copy: 1 or 2 edits: a byte changed, a piece removed, something put in; a word put in
+// the place of another (mistakes of meaning, in good syntax); a line removed or moved.
 static u32 mutate(u32 round, char *out, u32 cap) {
     Mutant m = {.text = out, .size = sizeof seed_text - 1, .cap = cap - 1, .round = round};
     memcpy(out, seed_text, m.size);
@@ -70,9 +73,15 @@ static u32 mutate(u32 round, char *out, u32 cap) {
         u32 size, from_size;
         const char *word = words[draw(&m, COUNT_OF(words))];
         switch (draw(&m, 8)) {
-        case 0: m.text[at] = (char)draw(&m, 256); break;
-        case 1: replace(&m, at, MIN(length, m.size - at), "", 0); break;
-        case 2: replace(&m, at, 0, word, (u32)strlen(word)); break;
+        case 0:
+            m.text[at] = (char)draw(&m, 256);
+            break;
+        case 1:
+            replace(&m, at, MIN(length, m.size - at), "", 0);
+            break;
+        case 2:
+            replace(&m, at, 0, word, (u32)strlen(word));
+            break;
         case 3:
             at = find_run(&m, at, true, &size);
             replace(&m, at, size, "", 0);
@@ -92,8 +101,8 @@ static u32 mutate(u32 round, char *out, u32 cap) {
     return m.size;
 }
 
-// A new file each time, without file_write's care: writing thousands over each other, the file system
-// would wait for the disk.
+// A new file each time, without file_write's care: writing thousands over each other, the file
+// system would wait for the disk.
 static void write_plain(const char *text, u64 size) {
     unlink(test_temp_path("m.toml"));
     FILE *file = fopen(test_temp_path("m.toml"), "wb");

@@ -60,11 +60,11 @@ TEST(level_repeat, rings_turn_their_copies) {
 
 TEST(level_repeat, a_list_is_a_product_with_the_first_outermost) {
     TestLevel level;
-    test_level_load_good(&level,
-                         "[[entity]]\nname = \"a\"\nrepeat = [{ ring = { count = 2, radius = 10 } }, { "
-                         "row = { count = 3, step = [1, 0, 0] } }]\n"
-                         "[[entity]]\nname = \"b\"\nrepeat = [{ row = { count = 3, step = [1, 0, 0] } }, "
-                         "{ ring = { count = 2, radius = 10, face = false } }]\n");
+    test_level_load_good(
+        &level, "[[entity]]\nname = \"a\"\nrepeat = [{ ring = { count = 2, radius = 10 } }, { "
+                "row = { count = 3, step = [1, 0, 0] } }]\n"
+                "[[entity]]\nname = \"b\"\nrepeat = [{ row = { count = 3, step = [1, 0, 0] } }, "
+                "{ ring = { count = 2, radius = 10, face = false } }]\n");
     expect_place(&level, "a.2", 12, 0, 0, 0);
     expect_place(&level, "a.5", -12, 0, 0, 180); // the ring turns the row
     expect_place(&level, "b.1", -10, 0, 0, 0);
@@ -73,14 +73,15 @@ TEST(level_repeat, a_list_is_a_product_with_the_first_outermost) {
 }
 
 TEST(level_repeat, scatter_fills_its_box_and_obeys_its_seed) {
-    static const char text[] = "[[entity]]\nname = \"a\"\n"
-                               "repeat.scatter = { count = 500, min = [-1, 0, 2], max = [1, 0, 6] }\n"
-                               "[[entity]]\nname = \"b\"\n"
-                               "repeat.scatter = { count = 9, seed = 3, min = [0, 0, 0], max = [1, 1, 1] }\n"
-                               "[[entity]]\nname = \"c\"\n"
-                               "repeat.scatter = { count = 9, seed = 3, min = [0, 0, 0], max = [1, 1, 1] }\n"
-                               "[[entity]]\nname = \"d\"\n"
-                               "repeat.scatter = { count = 9, min = [0, 0, 0], max = [1, 1, 1] }\n";
+    static const char text[] =
+        "[[entity]]\nname = \"a\"\n"
+        "repeat.scatter = { count = 500, min = [-1, 0, 2], max = [1, 0, 6] }\n"
+        "[[entity]]\nname = \"b\"\n"
+        "repeat.scatter = { count = 9, seed = 3, min = [0, 0, 0], max = [1, 1, 1] }\n"
+        "[[entity]]\nname = \"c\"\n"
+        "repeat.scatter = { count = 9, seed = 3, min = [0, 0, 0], max = [1, 1, 1] }\n"
+        "[[entity]]\nname = \"d\"\n"
+        "repeat.scatter = { count = 9, min = [0, 0, 0], max = [1, 1, 1] }\n";
     TestLevel level;
     test_level_load_good(&level, text);
     const TransformTable *t = WORLD_TABLE(level.world, Transform, transform);
@@ -153,7 +154,8 @@ TEST(level_vary, draws_depend_on_nothing_else) {
     ranges("", "", "", b);
     assert_memory_equal(a, b, sizeof a);
     // Other entities before and after, another varied key, another component: the same values.
-    ranges("[[entity]]\nlight = {}\n[[entity]]\nname = \"w\"\nlight = {}\nvary.light.range = { min = 1, max "
+    ranges("[[entity]]\nlight = {}\n[[entity]]\nname = \"w\"\nlight = {}\nvary.light.range = { min "
+           "= 1, max "
            "= 9 }\n",
            "vary.light.intensity = { min = 1, max = 2 }\npulse = {}\n", "[[entity]]\n", b);
     assert_memory_equal(a, b, sizeof a);
@@ -167,7 +169,10 @@ TEST(level_vary, unnamed_entities_go_by_their_number_among_the_unnamed) {
     char text[256];
     f32 first = 0;
     for (u32 i = 0; i < 3; i++) {
-        snprintf(text, sizeof text, "%s%s", i == 0 ? "" : i == 1 ? "[[entity]]\nname = \"n\"\n" : "[[entity]]\n",
+        snprintf(text, sizeof text, "%s%s",
+                 i == 0   ? ""
+                 : i == 1 ? "[[entity]]\nname = \"n\"\n"
+                          : "[[entity]]\n",
                  tail);
         TestLevel level;
         test_level_load_good(&level, text);
@@ -181,10 +186,11 @@ TEST(level_vary, unnamed_entities_go_by_their_number_among_the_unnamed) {
 
 TEST(level_vary, prefab_members_vary_by_themselves) {
     TestLevel level;
-    test_level_load_good(&level, "[[prefab]]\nname = \"p\"\n[[prefab.entity]]\n[[prefab.entity]]\n"
-                                 "vary.light.range = { min = 1, max = 9 }\n[[prefab.entity]]\n"
-                                 "vary.light.range = { min = 1, max = 9 }\n"
-                                 "[[entity]]\nprefab = \"p\"\nrepeat.row = { count = 2, step = [1, 0, 0] }\n");
+    test_level_load_good(
+        &level, "[[prefab]]\nname = \"p\"\n[[prefab.entity]]\n[[prefab.entity]]\n"
+                "vary.light.range = { min = 1, max = 9 }\n[[prefab.entity]]\n"
+                "vary.light.range = { min = 1, max = 9 }\n"
+                "[[entity]]\nprefab = \"p\"\nrepeat.row = { count = 2, step = [1, 0, 0] }\n");
     const LightTable *l = WORLD_TABLE(level.world, Light, light);
     assert_int_equal(l->table.count, 4);
     for (u32 i = 0; i < 4; i++)

@@ -1,4 +1,5 @@
-// level_schema.c: the published JSON schema: it is JSON, and it knows every key that the reader takes.
+// level_schema.c: the published JSON schema: it is JSON, and it knows every key that the reader
+// takes.
 #include "level_common.h"
 #include <stdio.h>
 

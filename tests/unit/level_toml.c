@@ -114,8 +114,10 @@ TEST(toml, dots_in_strings_comments_and_numbers_are_free) {
         "# ........................................................\n"
         "a = \"........................................................\"\n"
         "b = '''\n.......................................................'''\n"
-        "c = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0,"
-        "1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]\n"
+        "c = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, "
+        "9.0,"
+        "1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, "
+        "9.0]\n"
         "d = \"\\\"[[[[\" # [[[[[[\n";
     Parsed p;
     parse(&p, text, sizeof text - 1);
@@ -140,8 +142,14 @@ TEST(suggest, distance_counts_edits) {
         const char *a, *b;
         u32 distance;
     } cases[] = {
-        {"", "", 0},          {"a", "", 1},        {"light", "light", 0}, {"lihgt", "light", 1},
-        {"Light", "light", 0}, {"ligt", "light", 1}, {"lights", "light", 1}, {"kitten", "sitting", 3},
+        {"", "", 0},
+        {"a", "", 1},
+        {"light", "light", 0},
+        {"lihgt", "light", 1},
+        {"Light", "light", 0},
+        {"ligt", "light", 1},
+        {"lights", "light", 1},
+        {"kitten", "sitting", 3},
         {"ca", "abc", 3},
     };
     for (u32 i = 0; i < COUNT_OF(cases); i++) {
@@ -155,9 +163,9 @@ TEST(suggest, nearest_word_wins_and_far_ones_do_not) {
     static const char *const words[] = {"position", "rotation", "scale", "range", "rate"};
     static const struct {
         const char *word, *best;
-    } cases[] = {{"positoin", "position"}, {"rotaton", "rotation"}, {"scal", "scale"},
-                 {"rat", "rate"},          {"pos", "position"},     {"colour", NULL},
-                 {"x", NULL},              {"", NULL}};
+    } cases[] = {
+        {"positoin", "position"}, {"rotaton", "rotation"}, {"scal", "scale"}, {"rat", "rate"},
+        {"pos", "position"},      {"colour", NULL},        {"x", NULL},       {"", NULL}};
     for (u32 i = 0; i < COUNT_OF(cases); i++) {
         Suggestion s = suggest_begin(cases[i].word);
         for (u32 k = 0; k < COUNT_OF(words); k++) suggest_offer(&s, words[k]);

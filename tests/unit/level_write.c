@@ -15,7 +15,8 @@ static void round_trip(const char *text) {
     assert_true(b.is_good);
     for (u32 i = 0; i < a.world->component_count; i++) {
         if (table_hash(a.world->tables[i]) == table_hash(b.world->tables[i])) continue;
-        fprintf(stderr, "table %s differs; written:\n%s\n", a.world->tables[i]->desc->name, written);
+        fprintf(stderr, "table %s differs; written:\n%s\n", a.world->tables[i]->desc->name,
+                written);
         fail();
     }
     assert_true(world_hash(a.world) == world_hash(b.world));
@@ -27,32 +28,35 @@ static void round_trip(const char *text) {
 TEST(level_write, an_empty_world) { round_trip(""); }
 
 TEST(level_write, everything_comes_back) {
-    round_trip("[level]\nseed = -5\n"
-               "[environment]\nambient = \"#123456\"\nexposure = 0.1\ngravity = 1.62\n"
-               "[rules]\nlimit = 61.5\n"
-               "[[material]]\nname = \"brass \\\"old\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nbrdf = \"lambert\"\n"
-               "[[model]]\nname = \"ring\"\nshape = \"torus\"\ntube = 0.1\nsegments = 9\nrings = 5\n"
-               "[[model]]\nname = \"cave\"\nshape = \"cube\"\ninverted = true\nuv_repeat = 3\n"
-               "[[material]]\nname = \"cave/cube\"\nemissive = \"#111\"\nemissive_strength = 2\n"
-               "[[prefab]]\nname = \"lamp\"\n"
-               "[[prefab.entity]]\ninstance.model = \"ring\"\ninstance.material = \"brass \\\"old\\\"\"\n"
-               "[[prefab.entity]]\nname = \"glow\"\nlight.color = \"#fc8\"\nflicker = {}\n"
-               "path.points = [[0, 0.1, 0], [1, 2, 3], [4, 5, 6]]\n"
-               "[[prefab.entity]]\nname = \"door\"\nparent = \"glow\"\ndoor.lamp = \"glow\"\n"
-               "[[entity]]\nname = \"l\"\nprefab = \"lamp\"\nvary.transform.scale = { min = 0.5, max = 2 }\n"
-               "repeat = [{ ring = { count = 5, radius = 3, axis = \"x\" } }, { row = { count = 2, step = "
-               "[0.1, 0, 0] } }]\n"
-               "[[entity]]\nprefab = \"lamp\"\ntransform.position = [0.1, 1e5, -1e-7]\n"
-               "[[entity]]\nname = \"cave\"\ninstance.model = \"cave\"\nparent = \"end\"\n"
-               "door = { offset = -10, lock = 0, other = \"ring\" }\n"
-               "[[entity]]\nname = \"end\"\npath.points = [[1, 1, 1], [0, 0, 0]]\nwalker = {}\n"
-               "camera = {}\n[[entity]]\n");
+    round_trip(
+        "[level]\nseed = -5\n"
+        "[environment]\nambient = \"#123456\"\nexposure = 0.1\ngravity = 1.62\n"
+        "[rules]\nlimit = 61.5\n"
+        "[[material]]\nname = \"brass \\\"old\\\"\"\nalbedo = [0.1, 0.2, 0.3]\nbrdf = \"lambert\"\n"
+        "[[model]]\nname = \"ring\"\nshape = \"torus\"\ntube = 0.1\nsegments = 9\nrings = 5\n"
+        "[[model]]\nname = \"cave\"\nshape = \"cube\"\ninverted = true\nuv_repeat = 3\n"
+        "[[material]]\nname = \"cave/cube\"\nemissive = \"#111\"\nemissive_strength = 2\n"
+        "[[prefab]]\nname = \"lamp\"\n"
+        "[[prefab.entity]]\ninstance.model = \"ring\"\ninstance.material = \"brass \\\"old\\\"\"\n"
+        "[[prefab.entity]]\nname = \"glow\"\nlight.color = \"#fc8\"\nflicker = {}\n"
+        "path.points = [[0, 0.1, 0], [1, 2, 3], [4, 5, 6]]\n"
+        "[[prefab.entity]]\nname = \"door\"\nparent = \"glow\"\ndoor.lamp = \"glow\"\n"
+        "[[entity]]\nname = \"l\"\nprefab = \"lamp\"\nvary.transform.scale = { min = 0.5, max = 2 "
+        "}\n"
+        "repeat = [{ ring = { count = 5, radius = 3, axis = \"x\" } }, { row = { count = 2, step = "
+        "[0.1, 0, 0] } }]\n"
+        "[[entity]]\nprefab = \"lamp\"\ntransform.position = [0.1, 1e5, -1e-7]\n"
+        "[[entity]]\nname = \"cave\"\ninstance.model = \"cave\"\nparent = \"end\"\n"
+        "door = { offset = -10, lock = 0, other = \"ring\" }\n"
+        "[[entity]]\nname = \"end\"\npath.points = [[1, 1, 1], [0, 0, 0]]\nwalker = {}\n"
+        "camera = {}\n[[entity]]\n");
 }
 
 TEST(level_write, borders_of_ranges_come_back) {
-    round_trip("[[entity]]\nlight = { outer_angle = 0.1, intensity = 1e6, color = [1000, 0, 0.1] }\n"
-               "flicker = { rate = 0.01, amount = 1 }\norbit.period = 0.05\n"
-               "camera = { near = 0.001, fov = 150 }\n");
+    round_trip(
+        "[[entity]]\nlight = { outer_angle = 0.1, intensity = 1e6, color = [1000, 0, 0.1] }\n"
+        "flicker = { rate = 0.01, amount = 1 }\norbit.period = 0.05\n"
+        "camera = { near = 0.001, fov = 150 }\n");
 }
 
 TEST(level_write, unnamed_parents_get_names_that_are_free) {
