@@ -5,9 +5,9 @@
 #include "hud.h"
 
 #define MARGIN_PX     14.0f
-#define TITLE_SIZE_PX 34.0f
-#define TEXT_SIZE_PX  15.0f
-#define LINE_PX       20.0f
+#define TITLE_SIZE_PX 39.0f // texts are sharp at multiples of 13
+#define TEXT_SIZE_PX  13.0f
+#define LINE_PX       18.0f
 
 #define WARM_WHITE 0xD8ECFFu // RGB, red in the low byte
 

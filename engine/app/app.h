@@ -53,6 +53,9 @@ typedef struct AppDesc {
     bool headless;                          // no window even if there is a display
     bool panel;                             // the debug panel is open at the start
     bool fixed_step;                        // exactly one tick a frame, whatever the clock says
+    // Windows: scale and target_ms stay as they are in the settings. Else a software driver gets a
+    // resolution that follows the frame time, because few machines draw a whole window in time.
+    bool fixed_resolution;
     const char *record_path;                // records from the first tick on, until the end
     const char *replay_path;                // plays a recording and checks every tick
     const char *status_path;                // a line of JSON a second, for tests and curious people
@@ -74,6 +77,9 @@ typedef struct AppDesc {
 #define APP_DEFAULT_WIDTH   1280
 #define APP_DEFAULT_HEIGHT  720
 #define APP_RELOAD_POLL_MS  250.0
+#define APP_SHADER_POLL_MS  500.0
+#define APP_SOFTWARE_MS     40.0f // target_ms on a software driver
+#define APP_SOFTWARE_SCALE  0.5f  // where it starts
 #define APP_SCALE_STEP      0.0625f
 #define APP_SIDE_MIN_PX     16
 
@@ -95,7 +101,7 @@ struct App {
     char level_error[4096]; // diagnostics of the newest load, while it is broken
     char shader_error[2048];
     bool has_shader_directory;
-    f64 next_poll_ms;
+    f64 next_poll_ms, next_shader_poll_ms;
 
     // Recording and replay.
     RecordingWriter *writer;
@@ -138,7 +144,7 @@ bool app_upload_assets(App *app);
 
 // Loads a level; on failure the old one stays, diagnostics are printed and shown.
 bool app_load(App *app, const char *path);
-// Level files and shaders, every APP_RELOAD_POLL_MS.
+// Level files every APP_RELOAD_POLL_MS, shaders every APP_SHADER_POLL_MS.
 void app_poll_files(App *app, f64 now_ms);
 // One tick: the given input, or the replayed one; recorded if a recording runs. False: the
 // replay is over.

@@ -113,7 +113,10 @@ static bool apply_option(const Option *option, const char *value, AppDesc *desc,
         *(f32 *)field = (f32)number;
         return true;
     case OPTION_SIZE: return parse_size(value, desc);
-    case OPTION_SET: return settings_set(&options->settings, value);
+    case OPTION_SET:
+        desc->fixed_resolution |= strncmp(value, "scale=", 6) == 0;
+        desc->fixed_resolution |= strncmp(value, "target_ms=", 10) == 0;
+        return settings_set(&options->settings, value);
     case OPTION_HELP: break;
     }
     return true;

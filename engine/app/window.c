@@ -88,8 +88,9 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     bool down = action == GLFW_PRESS;
     if (down && debug_ui_wants_keyboard(window->ui)) return;
     if (down && key == GLFW_KEY_ESCAPE) {
-        if (window->device.captured) capture_mouse(window, false);
-        else window->quit = true;
+        if (!window->device.captured) window->quit = true;
+        else app_say(window->app, "the mouse is free; click to look around again, Escape quits");
+        capture_mouse(window, false);
         return;
     }
     if (down && key == GLFW_KEY_F11) {
@@ -132,6 +133,14 @@ static bool open_device(Window *window) {
     window->must_resize = true;
     window->ui_ready = debug_ui_upload(window->ui, window->app->renderer);
     return true;
+}
+
+static void choose_resolution(Window *window) {
+    App *app = window->app;
+    if (app->desc.fixed_resolution || !gpu_info(app->gpu)->is_software) return;
+    app->settings.target_ms = APP_SOFTWARE_MS;
+    app->settings.scale = APP_SOFTWARE_SCALE;
+    app_say(app, "software driver: the resolution follows the frame time; + and - choose it");
 }
 
 // False: the program must end.
@@ -216,7 +225,11 @@ static void prepare_level(Window *window) {
         glfwSetWindowTitle(window->handle, app->desc.title);
     }
     app->assets_warm = stamp;
-    step_clock_skip(&window->clock, clock_now_ms());
+    // None of this time was played.
+    f64 now = clock_now_ms();
+    step_clock_skip(&window->clock, now);
+    app->next_status_ms = now + STATUS_MS;
+    app->status_frames = 0;
 }
 
 // --- A frame ---
@@ -381,8 +394,8 @@ int app_run_window(App *app) {
     if (ok) {
         window->was_panel = app->panel;
         capture_mouse(window, !app->panel);
+        choose_resolution(window);
         app->start_ms = clock_now_ms();
-        app->next_status_ms = app->start_ms + STATUS_MS;
     }
     while (ok && !window->quit && !glfwWindowShouldClose(window->handle) && !time_is_up(window))
         frame(window);
