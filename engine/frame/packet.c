@@ -22,9 +22,9 @@ typedef struct Layout {
 // False if the block would not be addressable by u32 offsets.
 static bool layout_sections(const PacketSizes *sizes, Layout *layout) {
     u64 offset = ALIGN_UP(sizeof(Packet), CACHE_LINE);
-#define X(name, Type)                                                     \
-    layout->name = (PacketSection){(u32)offset, sizes->name};             \
-    offset = ALIGN_UP(offset + (u64)sizes->name * sizeof(Type), CACHE_LINE); \
+#define X(name, Type)                                                                              \
+    layout->name = (PacketSection){(u32)offset, sizes->name};                                      \
+    offset = ALIGN_UP(offset + (u64)sizes->name * sizeof(Type), CACHE_LINE);                       \
     if (offset > UINT32_MAX) return false;
     PACKET_SECTIONS(X)
 #undef X
@@ -64,8 +64,8 @@ static const char *check_layout(const Packet *packet, u64 size) {
     Layout layout;
     if (!layout_sections(&sizes, &layout)) return "sections are larger than a packet can be";
     if (layout.size != size) return "section counts do not add up to the packet's size";
-#define X(name, Type)                              \
-    if (packet->name.offset != layout.name.offset) \
+#define X(name, Type)                                                                              \
+    if (packet->name.offset != layout.name.offset)                                                 \
         return "section '" #name "' does not lie where it belongs";
     PACKET_SECTIONS(X)
 #undef X
@@ -132,8 +132,8 @@ static const char *check_materials(const Packet *packet, u32 texture_count) {
     for (u32 i = 0; i < packet->materials.count; i++) {
         const PacketMaterial *binding = &bindings[i];
         // 0 means none and must be accepted by a store without textures as well.
-        u32 top = MAX(MAX(binding->albedo_texture, binding->normal_texture),
-                      binding->emissive_texture);
+        u32 top =
+            MAX(MAX(binding->albedo_texture, binding->normal_texture), binding->emissive_texture);
         if (top != 0 && top >= texture_count) return "material names a texture that is not there";
         if (binding->alpha_mode > 2 || binding->double_sided > 1 || binding->emissive_pass > 1)
             return "material has an unknown mode";
@@ -223,7 +223,8 @@ static const char *check_tiles(const Packet *packet) {
     for (u32 i = 0; i < packet->tiles.count; i++) {
         u32 offset = tiles[i].list[0], points = tiles[i].list[1], spots = tiles[i].list[2];
         if (tiles[i].list[3] != 0) return "tile's reserved field is not zero";
-        if (points > point_count || spots > spot_count) return "tile has more lights than there are";
+        if (points > point_count || spots > spot_count)
+            return "tile has more lights than there are";
         bool all = points == point_count && spots == spot_count;
         if (offset == 0 && all && shared) continue;
         if (offset != cursor) return "tile's light list does not lie where it belongs";

@@ -10,7 +10,7 @@
 #include <string.h>
 
 const SettingDesc render_setting_descs[] = {
-#define S(type, name, initial, min, max, words, help) \
+#define S(type, name, initial, min, max, words, help)                                              \
     {#name, words, help, SETTING_##type, initial, min, max, offsetof(RenderSettings, name)},
     RENDER_SETTINGS(S)
 #undef S
@@ -191,10 +191,16 @@ bool settings_set(RenderSettings *settings, const char *key_equals_value) {
     f64 value = 0;
     bool known = false;
     switch (desc->type) {
-    case SETTING_ENUM: known = parse_enum(desc, text, &value); break;
-    case SETTING_BOOL: known = parse_bool(desc, text, &value); break;
+    case SETTING_ENUM:
+        known = parse_enum(desc, text, &value);
+        break;
+    case SETTING_BOOL:
+        known = parse_bool(desc, text, &value);
+        break;
     case SETTING_F32:
-    case SETTING_U32: known = parse_number(desc, text, &value); break;
+    case SETTING_U32:
+        known = parse_number(desc, text, &value);
+        break;
     }
     if (known) setting_write(settings, desc, value);
     return known;

@@ -52,8 +52,8 @@ typedef struct MoveJob {
 #define WAVES        3
 #define CIRCLE_STEPS 256 // shifts are a random number's byte
 static const u32 wave_frequency[3][WAVES] = {{1, 2, 5}, {1, 3, 4}, {1, 2, 3}};
-static const f32 wave_share[3][WAVES] = {{0.62f, 0.26f, 0.12f}, {0.55f, 0.3f, 0.15f},
-                                         {0.62f, 0.26f, 0.12f}};
+static const f32 wave_share[3][WAVES] = {
+    {0.62f, 0.26f, 0.12f}, {0.55f, 0.3f, 0.15f}, {0.62f, 0.26f, 0.12f}};
 #define FREQUENCY_TOP 5
 
 static void job_orbit(void *context, u32 begin, u32 end, u32 thread_index) {
@@ -67,7 +67,8 @@ static void job_orbit(void *context, u32 begin, u32 end, u32 thread_index) {
         f32 angle =
             (f32)(phase_at(job->world->tick, orbit->period[i], orbit->phase[i]) * (2.0 * PI_F));
         // Sine and cosine of the multiples by the addition theorem: one det_sin for nine waves.
-        f32 c[FREQUENCY_TOP + 1] = {1.0f, det_cos(angle)}, s[FREQUENCY_TOP + 1] = {0.0f, det_sin(angle)};
+        f32 c[FREQUENCY_TOP + 1] = {1.0f, det_cos(angle)},
+                              s[FREQUENCY_TOP + 1] = {0.0f, det_sin(angle)};
         for (u32 k = 2; k <= FREQUENCY_TOP; k++) {
             c[k] = c[k - 1] * c[1] - s[k - 1] * s[1];
             s[k] = s[k - 1] * c[1] + c[k - 1] * s[1];

@@ -1,8 +1,8 @@
 // collision.c: what a walker can bump into: static triangles in a grid, boxes that follow entities.
-// Data in: instances with collision = mesh (through their drawables and meshes) once, after loading;
-// instances with collision = box every time it is asked. Data out: the triangles and boxes near a
-// place. Called by: session (create, destroy), walk.c. Does not: move anything (walk.c), measure
-// distances (contact.c), or follow instances with collision = mesh that move.
+// Data in: instances with collision = mesh (through their drawables and meshes) once, after
+// loading; instances with collision = box every time it is asked. Data out: the triangles and boxes
+// near a place. Called by: session (create, destroy), walk.c. Does not: move anything (walk.c),
+// measure distances (contact.c), or follow instances with collision = mesh that move.
 //
 // The grid is uniform, about a metre a cell, and in compressed rows: first[cell] .. first[cell + 1]
 // index into items. Cells grow until the grid is small enough, so a huge level is only slower.
@@ -11,16 +11,20 @@
 #include <math.h>
 #include <string.h>
 
-#define CELL_M             1.0f
-#define CELLS_CAP          (1u << 21)
-#define ITEMS_CAP          (1u << 25)
-#define TRIANGLES_CAP      (1u << 23)
-#define SPAWNS_CAP         64
-#define FALL_M             20.0f
-#define COORDINATE_MAX     1e6f // m; what lies beyond (or is not a number) is no obstacle
+#define CELL_M         1.0f
+#define CELLS_CAP      (1u << 21)
+#define ITEMS_CAP      (1u << 25)
+#define TRIANGLES_CAP  (1u << 23)
+#define SPAWNS_CAP     64
+#define FALL_M         20.0f
+#define COORDINATE_MAX 1e6f // m; what lies beyond (or is not a number) is no obstacle
 
-typedef struct Triangle { Vec3 a, b, c; } Triangle;
-typedef struct Box3 { Vec3 min, max; } Box3;
+typedef struct Triangle {
+    Vec3 a, b, c;
+} Triangle;
+typedef struct Box3 {
+    Vec3 min, max;
+} Box3;
 
 struct CollisionWorld {
     Arena arena;
@@ -33,16 +37,15 @@ struct CollisionWorld {
     f32 cell_m;
     u32 size[3];
     u32 *first, *items; // [cells + 1], [first[cells]]
-    struct { Entity walker; Vec3 position; } spawns[SPAWNS_CAP];
+    struct {
+        Entity walker;
+        Vec3 position;
+    } spawns[SPAWNS_CAP];
     u32 spawn_count;
 };
 
-static Vec3 vec3_min(Vec3 a, Vec3 b) {
-    return vec3(MIN(a.x, b.x), MIN(a.y, b.y), MIN(a.z, b.z));
-}
-static Vec3 vec3_max(Vec3 a, Vec3 b) {
-    return vec3(MAX(a.x, b.x), MAX(a.y, b.y), MAX(a.z, b.z));
-}
+static Vec3 vec3_min(Vec3 a, Vec3 b) { return vec3(MIN(a.x, b.x), MIN(a.y, b.y), MIN(a.z, b.z)); }
+static Vec3 vec3_max(Vec3 a, Vec3 b) { return vec3(MAX(a.x, b.x), MAX(a.y, b.y), MAX(a.z, b.z)); }
 static bool in_range(Vec3 p) { // false for NaN
     return fabsf(p.x) < COORDINATE_MAX && fabsf(p.y) < COORDINATE_MAX &&
            fabsf(p.z) < COORDINATE_MAX;
@@ -59,7 +62,8 @@ static bool boxes_touch(Vec3 a_min, Vec3 a_max, Vec3 b_min, Vec3 b_max) {
 
 static bool is_static_mesh(const World *world, u32 drawable) {
     const InstanceTable *instances = WORLD_TABLE(world, Instance, instance);
-    u32 owner = table_row(&instances->table, WORLD_TABLE(world, Drawable, drawable)->owner[drawable]);
+    u32 owner =
+        table_row(&instances->table, WORLD_TABLE(world, Drawable, drawable)->owner[drawable]);
     return owner != ROW_NONE && instances->collision[owner] == COLLISION_MESH;
 }
 
@@ -90,8 +94,8 @@ static void collect_triangles(CollisionWorld *collision, const World *world) {
                 const f32 *p = mesh->vertices[mesh->indices[i + k]].position;
                 corners[k] = mat34_point(&matrix, vec3(p[0], p[1], p[2]));
             }
-            Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]),
-                                     vec3_sub(corners[2], corners[0]));
+            Vec3 normal =
+                vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
             bool solid = vec3_dot(normal, normal) > 0.0f; // a needle without area stops nobody
             if (!solid || !in_range(corners[0]) || !in_range(corners[1]) || !in_range(corners[2]))
                 continue;
@@ -102,7 +106,9 @@ static void collect_triangles(CollisionWorld *collision, const World *world) {
     collision->seen = ARENA_PUSH(&collision->arena, u32, collision->triangle_count);
 }
 
-typedef struct CellRange { u32 min[3], max[3]; } CellRange; // inclusive
+typedef struct CellRange {
+    u32 min[3], max[3];
+} CellRange; // inclusive
 
 static u32 cell_at(f32 position, f32 origin, f32 cell_m, u32 size) {
     f32 cell = (position - origin) / cell_m;
@@ -120,12 +126,12 @@ static CellRange cells_of(const CollisionWorld *c, Vec3 min, Vec3 max) {
     return range;
 }
 
-#define FOR_CELLS(range, collision, cell)                                                    \
-    for (u32 z_ = (range).min[2]; z_ <= (range).max[2]; z_++)                                \
-        for (u32 y_ = (range).min[1]; y_ <= (range).max[1]; y_++)                            \
-            for (u32 cell = (z_ * (collision)->size[1] + y_) * (collision)->size[0] +        \
-                            (range).min[0],                                                  \
-                     end_ = cell + (range).max[0] - (range).min[0];                          \
+#define FOR_CELLS(range, collision, cell)                                                          \
+    for (u32 z_ = (range).min[2]; z_ <= (range).max[2]; z_++)                                      \
+        for (u32 y_ = (range).min[1]; y_ <= (range).max[1]; y_++)                                  \
+            for (u32 cell =                                                                        \
+                         (z_ * (collision)->size[1] + y_) * (collision)->size[0] + (range).min[0], \
+                     end_ = cell + (range).max[0] - (range).min[0];                                \
                  cell <= end_; cell++)
 
 // How many cell entries all triangles make at the present cell size.
@@ -134,8 +140,8 @@ static u64 count_items(const CollisionWorld *c) {
     for (u32 i = 0; i < c->triangle_count; i++) {
         Box3 box = triangle_box(&c->triangles[i]);
         CellRange r = cells_of(c, box.min, box.max);
-        total += (u64)(r.max[0] - r.min[0] + 1) * (r.max[1] - r.min[1] + 1) *
-                 (r.max[2] - r.min[2] + 1);
+        total +=
+            (u64)(r.max[0] - r.min[0] + 1) * (r.max[1] - r.min[1] + 1) * (r.max[2] - r.min[2] + 1);
     }
     return total;
 }
@@ -173,8 +179,9 @@ static void build_grid(CollisionWorld *c) {
 
 // ---- boxes ----
 
-static const u8 box_faces[12][3] = {{0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}, {0, 4, 5}, {0, 5, 1},
-                                    {2, 3, 7}, {2, 7, 6}, {0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}};
+static const u8 box_faces[12][3] = {{0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3},
+                                    {0, 4, 5}, {0, 5, 1}, {2, 3, 7}, {2, 7, 6},
+                                    {0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}};
 
 // Corners of an instance's model box in the world: corner k takes bit 0 in x, 1 in y, 2 in z.
 // False if the instance has no model or no place.

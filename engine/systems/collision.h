@@ -12,9 +12,9 @@ typedef struct NearTriangle {
 
 // A box that follows an instance: anything inside is pushed out of it.
 typedef struct NearBox {
-    Mat34 to_unit;  // world to the cube -1..1
-    Vec3 axis[3];   // unit normals of its faces, world (up to sign)
-    f32 half_m[3];  // distance from its centre to the faces, along axis
+    Mat34 to_unit; // world to the cube -1..1
+    Vec3 axis[3];  // unit normals of its faces, world (up to sign)
+    f32 half_m[3]; // distance from its centre to the faces, along axis
 } NearBox;
 
 typedef struct NearShapes {
@@ -35,13 +35,16 @@ Vec3 collision_spawn(CollisionWorld *collision, Entity walker, Vec3 position);
 f32 collision_floor_y(const CollisionWorld *collision);
 
 // A capsule that stands upright: the ball of `radius` moved from low to high.
-typedef struct Capsule { Vec3 low, high; f32 radius; } Capsule;
+typedef struct Capsule {
+    Vec3 low, high;
+    f32 radius;
+} Capsule;
 typedef struct Contact {
-    f32 depth;     // how far they overlap; <= 0 = do not touch
-    Vec3 normal;   // unit, from the obstacle to the capsule
-    Vec3 point;    // on the obstacle
-    Vec3 facing;   // normal of the obstacle's face, on the capsule's side
-    bool at_foot;  // the lower end of the capsule's axis is nearest
+    f32 depth;    // how far they overlap; <= 0 = do not touch
+    Vec3 normal;  // unit, from the obstacle to the capsule
+    Vec3 point;   // on the obstacle
+    Vec3 facing;  // normal of the obstacle's face, on the capsule's side
+    bool at_foot; // the lower end of the capsule's axis is nearest
 } Contact;
 // Deepest one; of equally deep ones that which faces up most.
 Contact collision_deepest(const NearShapes *shapes, const Capsule *capsule);

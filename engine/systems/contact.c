@@ -15,14 +15,12 @@ Vec3 closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     f32 d3 = vec3_dot(ab, bp), d4 = vec3_dot(ac, bp);
     if (d3 >= 0.0f && d4 <= d3) return b;
     f32 vc = d1 * d4 - d3 * d2;
-    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
-        return vec3_add(a, vec3_scale(ab, d1 / (d1 - d3)));
+    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return vec3_add(a, vec3_scale(ab, d1 / (d1 - d3)));
     Vec3 cp = vec3_sub(p, c);
     f32 d5 = vec3_dot(ab, cp), d6 = vec3_dot(ac, cp);
     if (d6 >= 0.0f && d5 <= d6) return c;
     f32 vb = d5 * d2 - d1 * d6;
-    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
-        return vec3_add(a, vec3_scale(ac, d2 / (d2 - d6)));
+    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return vec3_add(a, vec3_scale(ac, d2 / (d2 - d6)));
     f32 va = d3 * d6 - d5 * d4;
     if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f)
         return vec3_add(b, vec3_scale(vec3_sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6))));

@@ -1,6 +1,6 @@
 // light_grid.c: which lights touch which tile of the screen.
-// Data in: view-space spheres (a spot's is its cone's), points first, then spots. Data out: per tile
-// an offset, a count of points and of spots, and one list of light indices, ascending within a
+// Data in: view-space spheres (a spot's is its cone's), points first, then spots. Data out: per
+// tile an offset, a count of points and of spots, and one list of light indices, ascending within a
 // tile. Called by: packet_build, tests. Does not: look at depth (the shader narrows lists by its
 // own boxes), or drop a light: a list too long for memory becomes the list of all lights.
 //
@@ -13,7 +13,7 @@
 #include "../base/log.h"
 #include <string.h>
 
-#define BOUNDS_PER_JOB 512
+#define BOUNDS_PER_JOB    512
 #define FILL_ROWS_PER_JOB 8
 // What single precision may lose in the result, as a part of the half screen: 0.0003 px at 720p.
 #define NDC_SLACK 1e-6
@@ -68,7 +68,8 @@ static void job_bounds(void *context, u32 begin, u32 end, u32 thread_index) {
     for (u32 i = begin; i < end; i++) {
         TileRect *rect = &plan->rects[i];
         f32 x0, x1, y0, y1;
-        if (!sphere_bounds_axis(in->x[i], in->z[i], in->radius[i], in->near, in->scale_x, &x0, &x1) ||
+        if (!sphere_bounds_axis(in->x[i], in->z[i], in->radius[i], in->near, in->scale_x, &x0,
+                                &x1) ||
             !sphere_bounds_axis(in->y[i], in->z[i], in->radius[i], in->near, in->scale_y, &y0,
                                 &y1)) {
             *rect = (TileRect){1, 1, 0, 0};
@@ -84,14 +85,16 @@ static void job_bounds(void *context, u32 begin, u32 end, u32 thread_index) {
 
 // Counts per tile of the lights [begin, end): corner differences, then sums along rows and columns.
 // Unsigned wrap-around cancels out.
-static u32 count_lights(const LightGridPlan *plan, u32 begin, u32 end, u32 *counts, Arena *scratch) {
+static u32 count_lights(const LightGridPlan *plan, u32 begin, u32 end, u32 *counts,
+                        Arena *scratch) {
     u64 mark = arena_mark(scratch);
     u32 stride = plan->tiles_x + 1, listed = 0;
     u32 *difference = ARENA_PUSH(scratch, u32, (u64)stride * (plan->tiles_y + 1));
     for (u32 i = begin; i < end; i++) {
         TileRect rect = plan->rects[i];
         if (rect.x0 > rect.x1) continue;
-        u32 *top = difference + (u64)rect.y0 * stride, *under = difference + (u64)(rect.y1 + 1) * stride;
+        u32 *top = difference + (u64)rect.y0 * stride,
+            *under = difference + (u64)(rect.y1 + 1) * stride;
         top[rect.x0]++;
         top[rect.x1 + 1]--;
         under[rect.x0]--;
@@ -146,9 +149,10 @@ LightGridPlan light_grid_plan(const LightGridInput *input, Arena *scratch) {
     if (plan.share_from != UINT32_MAX) {
         static bool told;
         if (!told)
-            LOG(RENDER_LIMIT, "light lists of %u lights on %u tiles exceed %u indices; tiles with %u "
-                "lights or more use all", input->count, plan.tile_count, LIGHT_GRID_INDICES_CAP,
-                plan.share_from);
+            LOG(RENDER_LIMIT,
+                "light lists of %u lights on %u tiles exceed %u indices; tiles with %u "
+                "lights or more use all",
+                input->count, plan.tile_count, LIGHT_GRID_INDICES_CAP, plan.share_from);
         told = true;
         cursor = input->count;
     }

@@ -5,7 +5,9 @@
 #include "systems.h"
 
 // Tiles that a light touches, inclusive; x0 > x1 = none.
-typedef struct TileRect { u16 x0, y0, x1, y1; } TileRect;
+typedef struct TileRect {
+    u16 x0, y0, x1, y1;
+} TileRect;
 
 // Indices of all lists together. Beyond, tiles with many lights share one list of all lights, so
 // that nothing is ever lost. 64 MiB: half of what the smallest storage buffers hold.
@@ -14,14 +16,14 @@ typedef struct TileRect { u16 x0, y0, x1, y1; } TileRect;
 typedef struct LightGridPlan {
     LightGridInput input;
     u32 tiles_x, tiles_y, tile_count;
-    TileRect *rects;      // [light count]
-    u32 *point_first;     // [tile_count] where a tile's points begin in the list
-    u32 *spot_first;      // [tile_count] and its spots
-    u32 *end;             // [tile_count] and where they end
-    u32 share_from;       // tiles with this many lights or more share the list of all
+    TileRect *rects;  // [light count]
+    u32 *point_first; // [tile_count] where a tile's points begin in the list
+    u32 *spot_first;  // [tile_count] and its spots
+    u32 *end;         // [tile_count] and where they end
+    u32 share_from;   // tiles with this many lights or more share the list of all
     u32 index_count;
-    u32 longest;          // lights in the fullest tile
-    u32 lights_listed;    // lights that touch any tile
+    u32 longest;       // lights in the fullest tile
+    u32 lights_listed; // lights that touch any tile
 } LightGridPlan;
 
 // Memory from scratch, to be kept until after the fill.

@@ -31,8 +31,7 @@ static PacketView make_view(const PacketBuildDesc *desc) {
     // A camera below a scaled parent must not scale the world: only directions are taken.
     view.position = mat34_translation(&world);
     view.forward = vec3_normalize(vec3(-world.m[2], -world.m[6], -world.m[10]));
-    view.right =
-        vec3_normalize(vec3_cross(view.forward, vec3(world.m[1], world.m[5], world.m[9])));
+    view.right = vec3_normalize(vec3_cross(view.forward, vec3(world.m[1], world.m[5], world.m[9])));
     if (!(vec3_dot(view.forward, view.forward) > 0.5f && vec3_dot(view.right, view.right) > 0.5f))
         view.forward = vec3(0, 0, -1), view.right = vec3(1, 0, 0); // a flattened matrix
     view.up = vec3_cross(view.right, view.forward);
@@ -87,8 +86,7 @@ static u32 find_flags(const World *world, u32 since) {
         table_changed_since(&WORLD_TABLE(world, Material, material)->table, since))
         flags |= PACKET_RELIGHT;
     // Rows that came or went, and modes that were switched, do not tell what they were before.
-    if (drawables->table.structure_stamp >= since ||
-        table_changed_since(&instances->table, since))
+    if (drawables->table.structure_stamp >= since || table_changed_since(&instances->table, since))
         return flags | PACKET_REVOXELISE;
     if (!table_changed_since(&drawables->table, since)) return flags;
     for (u32 row = 0; row < drawables->table.count; row++) {
@@ -102,7 +100,10 @@ static u32 find_flags(const World *world, u32 since) {
 
 // ---- culling ----
 
-typedef struct RowList { u32 *rows; u32 count; } RowList;
+typedef struct RowList {
+    u32 *rows;
+    u32 count;
+} RowList;
 
 static RowList cull_drawables(const World *world, const Frustum *frustum, Arena *scratch) {
     const DrawableTable *d = WORLD_TABLE(world, Drawable, drawable);
@@ -247,7 +248,7 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     packet_write_instances(desc->world, &parts->draws, instances);
     packet_write_instances(desc->world, &parts->shadow, instances + parts->draws.row_count);
     write_draws(packet, parts);
-#define COPY(section, Type, from) \
+#define COPY(section, Type, from)                                                                  \
     memcpy(PACKET_WRITE(packet, section, Type), from, (u64)sizes.section * sizeof(Type))
     COPY(materials, MaterialRecord, parts->palette->records);
     COPY(material_bindings, PacketMaterial, parts->palette->bindings);
@@ -310,8 +311,7 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
                                        visible.count, false, scratch);
     for (u32 alpha = 0; alpha < 3; alpha++)
         for (u32 i = 0; i < parts.draws.counts[alpha]; i++)
-            parts.emissive_count +=
-                draw_is_emissive(parts.palette, &parts.draws.lists[alpha][i]);
+            parts.emissive_count += draw_is_emissive(parts.palette, &parts.draws.lists[alpha][i]);
     if (parts.lights.casts_shadow && desc.settings.shadows) {
         parts.shadow_size_px = CLAMP(environment.shadow_size, 64, 4096);
         parts.shadow_fit = shadow_fit_view(&parts.view, parts.lights.shadow_direction,

@@ -58,9 +58,13 @@ static const MaterialRecord missing_record = {.albedo = {0.8f, 0.8f, 0.8f, 0.0f}
 
 // Palette index of a drawable's material. Neighbouring rows mostly share one: *memo spares the
 // look-up.
-typedef struct MaterialMemo { Entity entity; u32 row; } MaterialMemo;
+typedef struct MaterialMemo {
+    Entity entity;
+    u32 row;
+} MaterialMemo;
 static u32 material_row(const MaterialTable *materials, Entity entity, MaterialMemo *memo) {
-    if (entity != memo->entity) *memo = (MaterialMemo){entity, table_row(&materials->table, entity)};
+    if (entity != memo->entity)
+        *memo = (MaterialMemo){entity, table_row(&materials->table, entity)};
     return memo->row;
 }
 

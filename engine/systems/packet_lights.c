@@ -72,7 +72,8 @@ static LightCandidates collect_candidates(const LightTable *light, f32 gain, Are
     return job.out;
 }
 
-static LightRecord make_record(const LightTable *light, const LightCandidates *candidates, u32 row) {
+static LightRecord make_record(const LightTable *light, const LightCandidates *candidates,
+                               u32 row) {
     f32 reach = light->reach[row], slope = 0.0f;
     if (light->kind[row] == LIGHT_SPOT) {
         f32 inner = det_cos(DEG_TO_RAD(light->inner_angle[row]));
@@ -80,9 +81,8 @@ static LightRecord make_record(const LightTable *light, const LightCandidates *c
         // An inner angle at or beyond the outer one is a hard edge.
         slope = 1.0f / MAX(inner - outer, 1e-4f);
     }
-    return (LightRecord){
-        {light->x[row], light->y[row], light->z[row], 1.0f / (reach * reach)},
-        {candidates->r[row], candidates->g[row], candidates->b[row], slope}};
+    return (LightRecord){{light->x[row], light->y[row], light->z[row], 1.0f / (reach * reach)},
+                         {candidates->r[row], candidates->g[row], candidates->b[row], slope}};
 }
 
 // Lights far away whose window is closed everywhere: lanes without a light read it.
@@ -111,8 +111,8 @@ static void pack_local_lights(LightParts *parts, const LightTable *light,
             parts->spots[i - parts->point_count] =
                 (SpotRecord){{light->dir_x[row], light->dir_y[row], light->dir_z[row],
                               det_cos(DEG_TO_RAD(light->outer_angle[row]))}};
-        Vec3 from_eye = vec3_sub(
-            vec3(candidates->x[row], candidates->y[row], candidates->z[row]), view->position);
+        Vec3 from_eye = vec3_sub(vec3(candidates->x[row], candidates->y[row], candidates->z[row]),
+                                 view->position);
         x[i] = vec3_dot(from_eye, view->right);
         y[i] = vec3_dot(from_eye, view->up);
         z[i] = -vec3_dot(from_eye, view->forward);
@@ -151,8 +151,7 @@ static void collect_directionals(LightParts *parts, const LightTable *light,
             if (pass == 1) continue;
             first = row;
             parts->casts_shadow = true;
-            parts->shadow_direction =
-                vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]);
+            parts->shadow_direction = vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]);
             break;
         }
     }
@@ -183,9 +182,9 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
 
     u32 *visible = ARENA_PUSH(scratch, u32, ALIGN_UP(count, SIMD_WIDTH));
     Frustum everywhere = {.count = 0};
-    parts.visible = cull_spheres(desc->settings.light_culling ? &view->frustum : &everywhere,
-                                 candidates.x, candidates.y, candidates.z, candidates.radius, count,
-                                 visible);
+    parts.visible =
+        cull_spheres(desc->settings.light_culling ? &view->frustum : &everywhere, candidates.x,
+                     candidates.y, candidates.z, candidates.radius, count, visible);
     pack_local_lights(&parts, light, &candidates, visible, view, scratch);
     parts.grid_input.width_px = desc->width_px;
     parts.grid_input.height_px = desc->height_px;

@@ -38,11 +38,11 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
 // ---- packet_shadow.c ----
 
 typedef struct ShadowFit {
-    Vec3 right, up, back;      // the light looks along -back
+    Vec3 right, up, back;        // the light looks along -back
     f64 center_right, center_up; // of the square, on a whole texel
-    f32 half_m, texel_m;       // half a side of the square, a texel
-    f32 front, rear;           // along back: ends of the depth range
-    Frustum frustum;           // casters outside shadow nothing in the view
+    f32 half_m, texel_m;         // half a side of the square, a texel
+    f32 front, rear;             // along back: ends of the depth range
+    Frustum frustum;             // casters outside shadow nothing in the view
 } ShadowFit;
 // Square and rear end; front starts at the fitted sphere and grows with shadow_fit_casters.
 ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m, u32 size_px);

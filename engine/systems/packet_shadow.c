@@ -31,7 +31,8 @@ ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m
     f64 ahead = slice_ball(view->near, MAX(distance_m, view->near * 2.0f), tan2, &radius);
     Vec3 center = vec3_add(view->position, vec3_scale(view->forward, (f32)ahead));
 
-    // Two texels wider than the ball: snapping moves it by up to half a texel, filters read one more.
+    // Two texels wider than the ball: snapping moves it by up to half a texel, filters read one
+    // more.
     f64 half = radius * size_px / (size_px - 2.0), texel = 2.0 * half / size_px;
     fit.center_right = floor(vec3_dot(center, fit.right) / texel + 0.5) * texel;
     fit.center_up = floor(vec3_dot(center, fit.up) / texel + 0.5) * texel;
@@ -55,7 +56,8 @@ ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m
 }
 
 // Towards the light there is no end: whatever stands there casts into the view.
-void shadow_fit_casters(ShadowFit *fit, const DrawableTable *drawables, const u32 *rows, u32 count) {
+void shadow_fit_casters(ShadowFit *fit, const DrawableTable *drawables, const u32 *rows,
+                        u32 count) {
     for (u32 i = 0; i < count; i++) {
         u32 row = rows[i];
         Vec3 center = {drawables->bounds_x[row], drawables->bounds_y[row],
@@ -65,7 +67,8 @@ void shadow_fit_casters(ShadowFit *fit, const DrawableTable *drawables, const u3
 }
 
 Mat4 shadow_fit_matrix(const ShadowFit *fit) {
-    // World to light: rows right, up, back; the eye on the front plane, in the middle of the square.
+    // World to light: rows right, up, back; the eye on the front plane, in the middle of the
+    // square.
     Mat4 view = {{fit->right.x, fit->up.x, fit->back.x, 0, fit->right.y, fit->up.y, fit->back.y, 0,
                   fit->right.z, fit->up.z, fit->back.z, 0, (f32)-fit->center_right,
                   (f32)-fit->center_up, -fit->front, 1}};

@@ -60,8 +60,7 @@ void systems_tick(SystemTable *table, SystemContext *context) {
 void systems_settle(SystemTable *table, SystemContext *context) {
     for (u32 row = 0; row < table->count; row++) {
         SystemFunction function = table->rows[row].function;
-        if (function == system_transform || function == system_bounds)
-            run_row(table, row, context);
+        if (function == system_transform || function == system_bounds) run_row(table, row, context);
     }
     world_advance_stamp(context->world);
 }

@@ -91,18 +91,21 @@ static Mat34 local_matrix(const TransformTable *t, u32 row) {
     Vec3 rotation = {t->pitch[row], t->yaw[row], t->roll[row]};
     // Most moving things (thousands of lights) are not turned: no trigonometry for them.
     if (rotation.x == 0.0f && rotation.y == 0.0f && rotation.z == 0.0f)
-        return (Mat34){{scale.x, 0, 0, position.x, 0, scale.y, 0, position.y, 0, 0, scale.z,
-                        position.z}};
+        return (Mat34){
+            {scale.x, 0, 0, position.x, 0, scale.y, 0, position.y, 0, 0, scale.z, position.z}};
     return mat34_from_trs(position, rotation, scale);
 }
 
-// Writes the matrix to the columns if it differs in any bit.
+// Writes what differs in any bit; most often that is the translation alone, and a write that is not
+// made leaves its cache line clean.
 static bool store_if_different(f32 *const *columns, u32 row, const Mat34 *matrix) {
-    f32 old[12];
-    columns_get_mat34(columns, row, old);
-    if (memcmp(old, matrix->m, sizeof old) == 0) return false;
-    columns_set_mat34(columns, row, matrix->m);
-    return true;
+    bool changed = false;
+    for (u32 i = 0; i < 12; i++) {
+        if (memcmp(&columns[i][row], &matrix->m[i], sizeof(f32)) == 0) continue;
+        columns[i][row] = matrix->m[i];
+        changed = true;
+    }
+    return changed;
 }
 
 // Jobs stamp their own rows; newest_stamp is one value for the table and belongs to the caller.
@@ -219,8 +222,9 @@ static void job_lights(void *context, u32 begin, u32 end, u32 thread_index) {
                                  light->dir_y, light->dir_z, light->reach};
         bool changed = false;
         for (u32 i = 0; i < 7; i++) {
-            changed |= memcmp(&columns[i][row], &derived[i], sizeof(f32)) != 0;
+            if (memcmp(&columns[i][row], &derived[i], sizeof(f32)) == 0) continue;
             columns[i][row] = derived[i];
+            changed = true;
         }
         if (!changed) continue;
         light->table.stamp[row] = job->now;

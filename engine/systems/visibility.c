@@ -8,20 +8,20 @@
 #include <string.h>
 
 // Planes of the clip volume as rows of the matrix (Gribb and Hartmann 2001, "Fast extraction of
-// viewing frustum planes"), for depth 0..1 reversed: near is z <= w, far is z >= 0. With an infinite
-// far plane the far row has no direction and is left out.
+// viewing frustum planes"), for depth 0..1 reversed: near is z <= w, far is z >= 0. With an
+// infinite far plane the far row has no direction and is left out.
 Frustum frustum_from_matrix(const Mat4 *view_projection) {
     const f32 *m = view_projection->m;
     Frustum frustum = {.count = 0};
-    static const f32 combinations[6][4] = {
-        // of rows x, y, z, w
-        {1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 0, -1, 1}, {0, 0, 1, 0}};
+    static const f32 combinations[6][4] = {// of rows x, y, z, w
+                                           {1, 0, 0, 1},  {-1, 0, 0, 1}, {0, 1, 0, 1},
+                                           {0, -1, 0, 1}, {0, 0, -1, 1}, {0, 0, 1, 0}};
     for (u32 i = 0; i < COUNT_OF(combinations); i++) {
         const f32 *c = combinations[i];
         f32 plane[4];
         for (u32 k = 0; k < 4; k++)
-            plane[k] = c[0] * m[k * 4] + c[1] * m[k * 4 + 1] + c[2] * m[k * 4 + 2] +
-                       c[3] * m[k * 4 + 3];
+            plane[k] =
+                c[0] * m[k * 4] + c[1] * m[k * 4 + 1] + c[2] * m[k * 4 + 2] + c[3] * m[k * 4 + 3];
         f32 length = sqrtf(plane[0] * plane[0] + plane[1] * plane[1] + plane[2] * plane[2]);
         if (!(length > 0.0f)) continue;
         for (u32 k = 0; k < 4; k++) frustum.planes[frustum.count][k] = plane[k] / length;
@@ -35,18 +35,18 @@ typedef i32 i32x4_unaligned __attribute__((vector_size(16), aligned(4), may_alia
 typedef u64 u64x4 __attribute__((vector_size(32)));
 
 // Lanes of the set bits of a nibble, packed to the front; what follows is overwritten later.
-static const i32x4 packed_lanes[16] = {
-    {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {2, 0, 0, 0}, {0, 2, 0, 0},
-    {1, 2, 0, 0}, {0, 1, 2, 0}, {3, 0, 0, 0}, {0, 3, 0, 0}, {1, 3, 0, 0}, {0, 1, 3, 0},
-    {2, 3, 0, 0}, {0, 2, 3, 0}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+static const i32x4 packed_lanes[16] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0},
+                                       {2, 0, 0, 0}, {0, 2, 0, 0}, {1, 2, 0, 0}, {0, 1, 2, 0},
+                                       {3, 0, 0, 0}, {0, 3, 0, 0}, {1, 3, 0, 0}, {0, 1, 3, 0},
+                                       {2, 3, 0, 0}, {0, 2, 3, 0}, {1, 2, 3, 0}, {0, 1, 2, 3}};
 static const u8 bit_counts[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
 // Eight lanes' results become eight bits: each lane keeps its own bit, then all are joined.
-#define MASK_BITS(inside)                                                            \
-    ({                                                                               \
-        u64x4 own = (u64x4)((inside) & (i32x8){1, 2, 4, 8, 16, 32, 64, 128});        \
-        u64 joined = own[0] | own[1] | own[2] | own[3];                              \
-        (u32)(joined | joined >> 32);                                                \
+#define MASK_BITS(inside)                                                                          \
+    ({                                                                                             \
+        u64x4 own = (u64x4)((inside) & (i32x8){1, 2, 4, 8, 16, 32, 64, 128});                      \
+        u64 joined = own[0] | own[1] | own[2] | own[3];                                            \
+        (u32)(joined | joined >> 32);                                                              \
     })
 
 SIMD_CLONES

@@ -1,8 +1,8 @@
 // walk.c: one who walks, jumps, climbs steps or flies, moved by the tick's input.
 // Data in: Input, walker, camera's own transform, the collision world, gravity. Data out: transform
 // position (of the eyes), pitch and yaw; walker.velocity, grounded, fly. Called by: the system
-// table, before transform. Does not: follow a parent (walkers are roots), push things, or smooth the
-// camera. Deterministic: + - * / sqrt and det_ functions, contacts in a fixed order.
+// table, before transform. Does not: follow a parent (walkers are roots), push things, or smooth
+// the camera. Deterministic: + - * / sqrt and det_ functions, contacts in a fixed order.
 //
 // A body is an upright capsule. A tick's way is cut into steps of at most half its radius, and
 // after each step it is pushed out of what it touches, deepest contact first: so nothing is
@@ -16,24 +16,24 @@
 #include "environment.h"
 #include <math.h>
 
-#define EYES_BELOW_TOP_M  0.12f
-#define STEP_HEIGHT_M     0.35f
-#define FLOOR_COS         0.642787610f // 50 degrees
-#define JUMP_SPEED        4.5f  // m/s
-#define RUN_FACTOR        1.8f
-#define FLY_FACTOR        2.5f
-#define PITCH_MAX_DEG     89.0f
-#define TOUCH_M           1e-4f // overlap that is left alone: a gap of twice the radius lets through
-#define PUSHES_MAX        12
-#define DROP_STEP_MIN_M   1e-3f
-#define STEPS_MAX         256
-#define FALL_SPEED_MAX    55.0f // m/s
-#define GROUND_GRIP       0.25f // share of the wanted change of speed that a tick gives
-#define AIR_GRIP          0.04f
-#define STOP_SPEED        0.02f // m/s; slower is standing
+#define EYES_BELOW_TOP_M 0.12f
+#define STEP_HEIGHT_M    0.35f
+#define FLOOR_COS        0.642787610f // 50 degrees
+#define JUMP_SPEED       4.5f         // m/s
+#define RUN_FACTOR       1.8f
+#define FLY_FACTOR       2.5f
+#define PITCH_MAX_DEG    89.0f
+#define TOUCH_M          1e-4f // overlap that is left alone: a gap of twice the radius lets through
+#define PUSHES_MAX       12
+#define DROP_STEP_MIN_M  1e-3f
+#define STEPS_MAX        256
+#define FALL_SPEED_MAX   55.0f // m/s
+#define GROUND_GRIP      0.25f // share of the wanted change of speed that a tick gives
+#define AIR_GRIP         0.04f
+#define STOP_SPEED       0.02f // m/s; slower is standing
 
 typedef struct Body {
-    Vec3 feet;    // lowest point of the capsule
+    Vec3 feet; // lowest point of the capsule
     Vec3 velocity;
     f32 radius, height;
     f32 floor_y;   // where the newest floor touched it
@@ -166,8 +166,8 @@ static bool climb_step(Body *body, const NearShapes *shapes, const Body *start, 
 // ---- input ----
 
 typedef struct Wish {
-    Vec3 way;      // unit at most; level for walking
-    f32 speed;     // m/s
+    Vec3 way;  // unit at most; level for walking
+    f32 speed; // m/s
     bool jump;
 } Wish;
 

@@ -1,5 +1,5 @@
-// frame_packet.c: packets from strangers: damaged in thousands of ways, they are refused or they are
-// safe, by the word of a second checker that shares nothing with the first.
+// frame_packet.c: packets from strangers: damaged in thousands of ways, they are refused or they
+// are safe, by the word of a second checker that shares nothing with the first.
 #include "systems_fixture.h"
 #include "../test.h"
 #include "../../engine/base/random.h"
@@ -17,10 +17,10 @@ static const Packet *make_packet(SystemsFixture *f, u32 count) {
 // Reads what a renderer reads, asking before each access. Returns what is wrong.
 static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 texture_count) {
     const Packet *p = (const Packet *)block;
-#define NEED(x) \
+#define NEED(x)                                                                                    \
     if (!(x)) return #x
-#define X(name, Type)                                                          \
-    NEED(p->name.offset >= sizeof(Packet) && p->name.offset % CACHE_LINE == 0); \
+#define X(name, Type)                                                                              \
+    NEED(p->name.offset >= sizeof(Packet) && p->name.offset % CACHE_LINE == 0);                    \
     NEED((u64)p->name.offset + (u64)p->name.count * sizeof(Type) <= size);
     PACKET_SECTIONS(X)
 #undef X
@@ -36,7 +36,7 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
         NEED(isfinite(p->frame.view_projection[i]) && isfinite(p->frame.view[i]));
         NEED(isfinite(p->frame.shadow_matrix[i]));
     }
-    const PacketSection draws[] = {p->opaque_draws, p->mask_draws,   p->blend_draws,
+    const PacketSection draws[] = {p->opaque_draws,   p->mask_draws,   p->blend_draws,
                                    p->emissive_draws, p->shadow_draws, p->shadow_mask_draws};
     u64 drawn = 0;
     for (u32 list = 0; list < COUNT_OF(draws); list++) {
@@ -56,7 +56,8 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
     NEED(p->materials.count <= MATERIALS_CAP && p->material_bindings.count == p->materials.count);
     for (u32 i = 0; i < p->materials.count; i++) {
         const PacketMaterial *m = PACKET_DATA(p, material_bindings, PacketMaterial) + i;
-        NEED(m->albedo_texture < MAX(texture_count, 1) && m->normal_texture < MAX(texture_count, 1));
+        NEED(m->albedo_texture < MAX(texture_count, 1) &&
+             m->normal_texture < MAX(texture_count, 1));
         NEED(m->emissive_texture < MAX(texture_count, 1) && m->alpha_mode < 3);
     }
     u32 tiles_x = (p->width_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
@@ -91,8 +92,8 @@ TEST(frame_packet, built_packets_are_valid) {
         const char *problem =
             packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT);
         if (problem) fail_msg("%u things: %s", counts[i], problem);
-        assert_null(check_plainly((const u8 *)p, p->size, FIXTURE_MESH_COUNT,
-                                  FIXTURE_TEXTURE_COUNT));
+        assert_null(
+            check_plainly((const u8 *)p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
         // A store with fewer meshes or textures cannot draw it.
         if (counts[i] > 1) {
             assert_non_null(packet_validate(p, p->size, 2, FIXTURE_TEXTURE_COUNT));
@@ -110,11 +111,9 @@ TEST(frame_packet, sizes_and_alignment_are_checked) {
     assert_null(packet_validate(copy, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     for (u64 size = 0; size < p->size; size += 1 + size / 7)
         assert_non_null(packet_validate(copy, size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
-    assert_non_null(
-        packet_validate(copy, p->size + 64, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_non_null(packet_validate(copy, p->size + 64, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     memmove(copy + 4, copy, p->size);
-    assert_non_null(
-        packet_validate(copy + 4, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_non_null(packet_validate(copy + 4, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     assert_non_null(packet_validate(NULL, 0, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     free(copy);
     systems_fixture_destroy(f);
@@ -122,9 +121,9 @@ TEST(frame_packet, sizes_and_alignment_are_checked) {
 
 // A word of the packet gets an evil value, or two words change places, or a section's fields do.
 static void damage(u32 *words, u64 word_count, u64 seed, u32 round) {
-    static const u32 evil[] = {0,          1,          2,          3,          0x7F800000u,
+    static const u32 evil[] = {0,           1,           2,           3,           0x7F800000u,
                                0x7FC00000u, 0xFF800000u, 0xFFFFFFFFu, 0x80000000u, 0x7FFFFFFFu,
-                               64,         128,        1u << 24,   0x10000u};
+                               64,          128,         1u << 24,    0x10000u};
     const u64 header = sizeof(Packet) / 4;
     u32 hits = 1 + random_u32(seed, 1, round) % 3;
     for (u32 hit = 0; hit < hits; hit++) {
@@ -134,11 +133,21 @@ static void damage(u32 *words, u64 word_count, u64 seed, u32 round) {
         u64 at = random_u64(seed, 3, draw) % range, other = random_u64(seed, 4, draw) % range;
         u32 swap = words[at];
         switch (random_u32(seed, 5, draw) % 5) {
-        case 0: words[at] = evil[random_u32(seed, 6, draw) % COUNT_OF(evil)]; break;
-        case 1: words[at] = words[other], words[other] = swap; break;
-        case 2: words[at] ^= 1u << (random_u32(seed, 6, draw) & 31); break;
-        case 3: words[at] += random_u32(seed, 6, draw) & 1 ? 1u : 0xFFFFFFFFu; break;
-        case 4: words[at] = random_u32(seed, 6, draw); break;
+        case 0:
+            words[at] = evil[random_u32(seed, 6, draw) % COUNT_OF(evil)];
+            break;
+        case 1:
+            words[at] = words[other], words[other] = swap;
+            break;
+        case 2:
+            words[at] ^= 1u << (random_u32(seed, 6, draw) & 31);
+            break;
+        case 3:
+            words[at] += random_u32(seed, 6, draw) & 1 ? 1u : 0xFFFFFFFFu;
+            break;
+        case 4:
+            words[at] = random_u32(seed, 6, draw);
+            break;
         }
     }
 }
@@ -178,23 +187,23 @@ TEST(frame_packet, each_index_is_checked) {
     assert_true(good->spots.count && good->light_indices.count && good->shadow_mask_draws.count);
     Packet *p = malloc(good->size);
     memcpy(p, good, good->size);
-#define TOO_LARGE(field, limit)                                                               \
-    do {                                                                                      \
-        u32 kept = (field), values[] = {(limit), (limit) + 1, 0x7FFFFFFF, 0xFFFFFFFF};        \
-        for (u32 v_ = 0; v_ < 4; v_++) {                                                      \
-            (field) = values[v_];                                                             \
-            if (!packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT))      \
-                fail_msg(#field " = %u was taken", values[v_]);                               \
-        }                                                                                     \
-        (field) = kept;                                                                       \
+#define TOO_LARGE(field, limit)                                                                    \
+    do {                                                                                           \
+        u32 kept = (field), values[] = {(limit), (limit) + 1, 0x7FFFFFFF, 0xFFFFFFFF};             \
+        for (u32 v_ = 0; v_ < 4; v_++) {                                                           \
+            (field) = values[v_];                                                                  \
+            if (!packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT))           \
+                fail_msg(#field " = %u was taken", values[v_]);                                    \
+        }                                                                                          \
+        (field) = kept;                                                                            \
     } while (0)
-#define DRAW_FIELDS(section)                                                              \
-    do {                                                                                  \
-        PacketDraw *d = PACKET_WRITE(p, section, PacketDraw) + p->section.count - 1;      \
-        TOO_LARGE(d->mesh, FIXTURE_MESH_COUNT);                                           \
-        TOO_LARGE(d->material, p->materials.count);                                       \
-        TOO_LARGE(d->first_instance, p->instances.count);                                 \
-        TOO_LARGE(d->instance_count, p->instances.count + 1 - d->first_instance);         \
+#define DRAW_FIELDS(section)                                                                       \
+    do {                                                                                           \
+        PacketDraw *d = PACKET_WRITE(p, section, PacketDraw) + p->section.count - 1;               \
+        TOO_LARGE(d->mesh, FIXTURE_MESH_COUNT);                                                    \
+        TOO_LARGE(d->material, p->materials.count);                                                \
+        TOO_LARGE(d->first_instance, p->instances.count);                                          \
+        TOO_LARGE(d->instance_count, p->instances.count + 1 - d->first_instance);                  \
     } while (0)
     DRAW_FIELDS(opaque_draws);
     DRAW_FIELDS(mask_draws);

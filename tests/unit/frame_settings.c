@@ -44,16 +44,26 @@ static void keep_text(LogId id, LogLevel level, const char *text, void *user) {
 TEST(frame_settings, mistakes_change_nothing_and_suggest) {
     const struct {
         const char *text, *hint;
-    } mistakes[] = {{"pth=forward", "'path'"},       {"path=foward", "'forward'"},
-                    {"veiw=final", "'view'"},        {"path=tiled_defered", "'tiled_deferred'"},
-                    {"tonemapp=1", "'tonemap'"},     {"scale=2", "0.25 to 1"},
-                    {"scale=0.5x", "number"},        {"scale=", "number"},
-                    {"scale=nan", "number"},         {"scale=inf", "number"},
-                    {"scale= 1", "number"},          {"scale=1e999", "0.25 to 1"},
-                    {"light_limit=1.5", "whole"},    {"light_limit=-1", "0 to"},
-                    {"shadows=maybe", "true or false"}, {"path", "key=value"},
-                    {"=1", "unknown setting ''"},    {"", "key=value"},
-                    {"completely_different=1", "unknown setting"}, {"path=", "it can be"}};
+    } mistakes[] = {{"pth=forward", "'path'"},
+                    {"path=foward", "'forward'"},
+                    {"veiw=final", "'view'"},
+                    {"path=tiled_defered", "'tiled_deferred'"},
+                    {"tonemapp=1", "'tonemap'"},
+                    {"scale=2", "0.25 to 1"},
+                    {"scale=0.5x", "number"},
+                    {"scale=", "number"},
+                    {"scale=nan", "number"},
+                    {"scale=inf", "number"},
+                    {"scale= 1", "number"},
+                    {"scale=1e999", "0.25 to 1"},
+                    {"light_limit=1.5", "whole"},
+                    {"light_limit=-1", "0 to"},
+                    {"shadows=maybe", "true or false"},
+                    {"path", "key=value"},
+                    {"=1", "unknown setting ''"},
+                    {"", "key=value"},
+                    {"completely_different=1", "unknown setting"},
+                    {"path=", "it can be"}};
     RenderSettings before = settings_default(), s = before;
     log_set_sink(keep_text, NULL);
     for (u32 i = 0; i < COUNT_OF(mistakes); i++) {

@@ -10,7 +10,8 @@ static Entity spawn_orbit(SystemsFixture *f, f32 period, Vec3 radius) {
     u32 row = FIXTURE_ADD(f, orbit, entity);
     OrbitTable *orbit = FIXTURE_TABLE(f, Orbit, orbit);
     orbit->period[row] = period;
-    orbit->radius_x[row] = radius.x, orbit->radius_y[row] = radius.y, orbit->radius_z[row] = radius.z;
+    orbit->radius_x[row] = radius.x, orbit->radius_y[row] = radius.y,
+    orbit->radius_z[row] = radius.z;
     return entity;
 }
 
@@ -53,7 +54,8 @@ TEST(systems_animate, orbits_are_periodic_bounded_and_their_own) {
     }
     assert_int_equal(equal, 0);
     assert_true(fastest < 0.15f); // no jump, not even where the round closes
-    assert_true(high.x - low.x > radius.x && high.y - low.y > radius.y && high.z - low.z > radius.z);
+    assert_true(high.x - low.x > radius.x && high.y - low.y > radius.y &&
+                high.z - low.z > radius.z);
     systems_fixture_destroy(f);
 }
 

@@ -45,8 +45,8 @@ SystemsFixture *systems_fixture_create(u64 seed) {
                              .texture_count = FIXTURE_TEXTURE_COUNT,
                              .stamp = 77};
     systems_create(&f->systems);
-    f->context = (SystemContext){
-        .world = f->world, .assets = &f->assets, .scratch = &f->arenas.scratch};
+    f->context =
+        (SystemContext){.world = f->world, .assets = &f->assets, .scratch = &f->arenas.scratch};
     f->model = world_spawn(f->world);
     u32 row = FIXTURE_ADD(f, model, f->model);
     FIXTURE_TABLE(f, Model, model)->model[row] = 1;

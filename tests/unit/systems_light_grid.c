@@ -9,7 +9,10 @@
 
 #define NEAR_M 0.1f
 
-typedef struct Interval { f64 low, high; bool any; } Interval;
+typedef struct Interval {
+    f64 low, high;
+    bool any;
+} Interval;
 
 // The same by another way: angles of the tangents, and the cut at the near plane where a tangent
 // does not reach in front of it. In double, with libm.
@@ -63,7 +66,8 @@ TEST(systems_light_grid, sphere_bounds_contain_all_samples_and_are_tight) {
         // Samples of the surface, in the plane of the axis and outside of it.
         for (u32 k = 0; k < 4; k++) {
             u64 s = (u64)i * 4 + k;
-            f64 y = random_range(seed, 5, s, -1, 1), angle = random_range(seed, 6, s, 0, 6.2831853f);
+            f64 y = random_range(seed, 5, s, -1, 1),
+                angle = random_range(seed, 6, s, 0, 6.2831853f);
             if (k < 2) y = 0;
             f64 ring = sqrt(1 - y * y);
             f64 x = c + r * ring * cos(angle), depth = -(f64)z + r * ring * sin(angle);
@@ -85,8 +89,11 @@ typedef struct GridCase {
 } GridCase;
 
 static GridCase make_case(u64 seed, u32 count, u32 width_px, u32 height_px, f32 radius_max) {
-    GridCase c = {calloc(count + 8, 4), calloc(count + 8, 4), calloc(count + 8, 4),
-                  calloc(count + 8, 4), {0}};
+    GridCase c = {calloc(count + 8, 4),
+                  calloc(count + 8, 4),
+                  calloc(count + 8, 4),
+                  calloc(count + 8, 4),
+                  {0}};
     for (u32 i = 0; i < count; i++) {
         c.z[i] = random_range(seed, 1, i, -25, 1);
         c.x[i] = random_range(seed, 2, i, -1.3f, 1.3f) * -c.z[i];
@@ -94,17 +101,22 @@ static GridCase make_case(u64 seed, u32 count, u32 width_px, u32 height_px, f32 
         c.radius[i] = random_range(seed, 4, i, 0.05f, radius_max);
     }
     f32 scale_y = 1.7f;
-    c.input = (LightGridInput){c.x,        c.y,       c.z,
-                               c.radius,   count,     count * 2 / 3,
-                               width_px,   height_px, 16,
-                               NEAR_M,     scale_y * (f32)height_px / (f32)width_px,
+    c.input = (LightGridInput){c.x,
+                               c.y,
+                               c.z,
+                               c.radius,
+                               count,
+                               count * 2 / 3,
+                               width_px,
+                               height_px,
+                               16,
+                               NEAR_M,
+                               scale_y * (f32)height_px / (f32)width_px,
                                scale_y};
     return c;
 }
 
-static void free_case(GridCase *c) {
-    free(c->x), free(c->y), free(c->z), free(c->radius);
-}
+static void free_case(GridCase *c) { free(c->x), free(c->y), free(c->z), free(c->radius); }
 
 // How far the light's rectangle reaches over the border of a tile, in pixels; negative = outside.
 static f64 overlap_px(Interval i, f64 side_px, u32 tile, u32 tile_px, bool flip) {
@@ -158,15 +170,20 @@ TEST(systems_light_grid, lists_equal_asking_every_tile) {
 TEST(systems_light_grid, no_lights_give_empty_lists) {
     Arenas arenas;
     assert_true(arenas_create(&arenas));
-    LightGridInput input = {.width_px = 100, .height_px = 50, .tile_px = 16, .near = NEAR_M,
-                            .scale_x = 1, .scale_y = 1};
+    LightGridInput input = {.width_px = 100,
+                            .height_px = 50,
+                            .tile_px = 16,
+                            .near = NEAR_M,
+                            .scale_x = 1,
+                            .scale_y = 1};
     LightGrid grid = light_grid_build(&input, &arenas.scratch);
     assert_int_equal(grid.index_count, 0);
     assert_int_equal(grid.tiles_x * grid.tiles_y, 28);
     arenas_destroy(&arenas);
 }
 
-// Lists that would not fit into memory: full tiles share the list of all lights, others keep theirs.
+// Lists that would not fit into memory: full tiles share the list of all lights, others keep
+// theirs.
 TEST(systems_light_grid, too_long_lists_share_one) {
     Arenas arenas;
     assert_true(arenas_create(&arenas));

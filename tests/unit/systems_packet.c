@@ -58,8 +58,8 @@ TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
                 assert_int_equal(t->mesh[row], d->mesh);
                 if (list < ALPHA_BLEND && k > 0) assert_true(r->ids[1] > r[-1].ids[1]);
                 if (list == ALPHA_BLEND) {
-                    f32 distance = vec3_length(vec3(t->bounds_x[row], t->bounds_y[row],
-                                                    t->bounds_z[row]));
+                    f32 distance =
+                        vec3_length(vec3(t->bounds_x[row], t->bounds_y[row], t->bounds_z[row]));
                     assert_true(distance <= last_distance * 1.00001f);
                     last_distance = distance;
                 }
@@ -95,11 +95,13 @@ TEST(systems_packet, materials_become_records) {
         t->emissive_strength[row] = 5;
         t->diffuse[row] = i == 1 ? DIFFUSE_OREN_NAYAR : DIFFUSE_LAMBERT;
         t->fresnel[row] = i == 3;
-        Entity box = fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
+        Entity box =
+            fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
         (void)box;
         FIXTURE_TABLE(f, Drawable, drawable)->material[i] = m[i];
     }
-    FIXTURE_TABLE(f, Material, material)->receives_dynamic_light[FIXTURE_ROW(f, material, m[0])] = 0;
+    FIXTURE_TABLE(f, Material, material)->receives_dynamic_light[FIXTURE_ROW(f, material, m[0])] =
+        0;
     systems_settle(&f->systems, &f->context);
     const Packet *p = fixture_packet(f, ENTITY_NONE, settings_default(), 64, 64, 0);
     const MaterialRecord *r = PACKET_DATA(p, materials, MaterialRecord);
@@ -167,8 +169,8 @@ TEST(systems_packet, light_manager_keeps_what_lights_the_view) {
     const SpotRecord *s = PACKET_DATA(p, spots, SpotRecord);
     ASSERT_NEAR(s->direction[2], -1, 1e-6);
     ASSERT_NEAR(s->direction[3], cos(35 * 3.14159265 / 180), 1e-6);
-    ASSERT_NEAR(lights[1].color[3],
-                1 / (cos(20 * 3.14159265 / 180) - cos(35 * 3.14159265 / 180)), 1e-3);
+    ASSERT_NEAR(lights[1].color[3], 1 / (cos(20 * 3.14159265 / 180) - cos(35 * 3.14159265 / 180)),
+                1e-3);
     const LightRecord *dummy = &lights[p->frame.counts2[2]];
     assert_true(dummy->color[0] == 0 && dummy->position[3] >= 1 && dummy->position[1] < -1000);
 
@@ -226,10 +228,12 @@ TEST(systems_packet, no_lit_pixel_misses_its_light) {
                                vec3_scale(d, light->reach[row]));
             Vec4 clip = mat4_mul_vec4(matrix, (Vec4){at.x, at.y, at.z, 1});
             if (!(clip.w > 0 && clip.z <= clip.w)) continue;
-            f32 x = (clip.x / clip.w * 0.5f + 0.5f) * 333, y = (0.5f - clip.y / clip.w * 0.5f) * 211;
+            f32 x = (clip.x / clip.w * 0.5f + 0.5f) * 333,
+                y = (0.5f - clip.y / clip.w * 0.5f) * 211;
             if (!(x >= 0 && x < 333 && y >= 0 && y < 211)) continue;
             const u32 *list =
-                PACKET_DATA(p, tiles, TileRecord)[(u32)y / 16 * p->frame.counts[3] + (u32)x / 16].list;
+                PACKET_DATA(p, tiles, TileRecord)[(u32)y / 16 * p->frame.counts[3] + (u32)x / 16]
+                    .list;
             bool found = false;
             for (u32 i = 0; i < list[1] + list[2]; i++) {
                 const LightRecord *r = &lights[PACKET_DATA(p, light_indices, u32)[list[0] + i]];
@@ -314,13 +318,15 @@ TEST(systems_packet, shadow_map_covers_the_view_and_its_casters) {
                 nx = k & 2 ? 1 : -1, ny = k & 4 ? 1 : -1;
             }
             for (u32 a = 0; a < 3; a++)
-                point[a] = p->frame.camera[a] +
-                           (p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny +
-                            p->frame.ray_forward[a]) * depth;
+                point[a] =
+                    p->frame.camera[a] + (p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny +
+                                          p->frame.ray_forward[a]) *
+                                             depth;
             Vec4 clip = mat4_mul_vec4(shadow, (Vec4){point[0], point[1], point[2], 1});
             ASSERT_NEAR(clip.w, 1, 1e-6);
             f64 slack = 1e-4;
-            if (!(fabsf(clip.x) <= 1 && fabsf(clip.y) <= 1 && clip.z >= -slack && clip.z <= 1 + slack))
+            if (!(fabsf(clip.x) <= 1 && fabsf(clip.y) <= 1 && clip.z >= -slack &&
+                  clip.z <= 1 + slack))
                 fail_msg("round %u: %g %g %g", round, clip.x, clip.y, clip.z);
         }
         // No caster is cut at the light's end; the projection keeps handedness and reversed depth.
@@ -417,8 +423,9 @@ TEST(systems_packet, rays_and_matrices_agree) {
         f32 x = (f32)(i % 8) / 3.5f - 1, y = (f32)(i / 8) / 3.5f - 1, distance = 0.2f + (f32)i;
         f32 p[3];
         for (u32 a = 0; a < 3; a++)
-            p[a] = frame->camera[a] + (frame->ray_right[a] * x + frame->ray_up[a] * y +
-                                       frame->ray_forward[a]) * distance;
+            p[a] =
+                frame->camera[a] +
+                (frame->ray_right[a] * x + frame->ray_up[a] * y + frame->ray_forward[a]) * distance;
         Vec4 clip = mat4_mul_vec4(matrix, (Vec4){p[0], p[1], p[2], 1});
         ASSERT_NEAR(clip.x / clip.w, x, 1e-4);
         ASSERT_NEAR(clip.y / clip.w, y, 1e-4);
@@ -429,8 +436,10 @@ TEST(systems_packet, rays_and_matrices_agree) {
 
 TEST(systems_packet, flags_follow_from_stamps) {
     SystemsFixture *f = systems_fixture_create(5);
-    Entity still = fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
-    Entity door = fixture_spawn_mesh(f, MESH_CUBE, vec3(2, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
+    Entity still =
+        fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
+    Entity door =
+        fixture_spawn_mesh(f, MESH_CUBE, vec3(2, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
     FIXTURE_TABLE(f, Instance, instance)->voxel_mode[1] = VOXEL_DYNAMIC;
     Entity lamp = fixture_spawn_light(f, LIGHT_POINT, vec3(0, 0, -4), 2);
     systems_settle(&f->systems, &f->context);
@@ -452,7 +461,8 @@ TEST(systems_packet, flags_follow_from_stamps) {
         assert_int_equal(flags, want[i]);
         since = f->world->stamp;
         systems_tick(&f->systems, &f->context);
-        assert_int_equal(fixture_packet(f, ENTITY_NONE, settings_default(), 64, 64, since)->flags, 0);
+        assert_int_equal(fixture_packet(f, ENTITY_NONE, settings_default(), 64, 64, since)->flags,
+                         0);
     }
     u32 since = f->world->stamp;
     world_despawn(f->world, door);

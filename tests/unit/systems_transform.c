@@ -31,11 +31,10 @@ static bool on_cycle(SystemsFixture *f, u32 row) {
 
 static Mat34 world_recursive(SystemsFixture *f, u32 row) {
     const TransformTable *t = FIXTURE_TABLE(f, Transform, transform);
-    Mat34 local = mat34_from_trs(
-        vec3(t->x[row] + t->offset_x[row], t->y[row] + t->offset_y[row],
-             t->z[row] + t->offset_z[row]),
-        vec3(t->pitch[row], t->yaw[row], t->roll[row]),
-        vec3(t->scale_x[row], t->scale_y[row], t->scale_z[row]));
+    Mat34 local = mat34_from_trs(vec3(t->x[row] + t->offset_x[row], t->y[row] + t->offset_y[row],
+                                      t->z[row] + t->offset_z[row]),
+                                 vec3(t->pitch[row], t->yaw[row], t->roll[row]),
+                                 vec3(t->scale_x[row], t->scale_y[row], t->scale_z[row]));
     u32 parent = table_row(&t->table, t->parent[row]);
     if (parent == ROW_NONE || on_cycle(f, row)) return local;
     return mat34_mul(world_recursive(f, parent), local);
@@ -53,8 +52,8 @@ static void assert_hierarchy(SystemsFixture *f) {
 // Trees in random row order (parents after children), stale parents, cycles; then changes.
 static void random_forest(SystemsFixture *f, u64 seed, u32 count, Entity *entities) {
     for (u32 i = 0; i < count; i++)
-        entities[i] = fixture_spawn(f, vec3(random_range(seed, 1, i, -2, 2), 0,
-                                            random_range(seed, 2, i, -2, 2)));
+        entities[i] = fixture_spawn(
+            f, vec3(random_range(seed, 1, i, -2, 2), 0, random_range(seed, 2, i, -2, 2)));
     TransformTable *t = FIXTURE_TABLE(f, Transform, transform);
     for (u32 i = 0; i < count; i++) {
         u32 row = FIXTURE_ROW(f, transform, entities[i]);
@@ -131,7 +130,8 @@ TEST(systems_transform, drawables_lights_and_bounds_follow) {
     ASSERT_NEAR(l->dir_x[row], -1, 1e-6);
     ASSERT_NEAR(l->reach[row], 32, 1e-4); // 4 / 32^2 = 1/256
     const DrawableTable *d = FIXTURE_TABLE(f, Drawable, drawable);
-    Mat34 have = world_of(f, "drawable", 0), want = world_of(f, "transform", FIXTURE_ROW(f, transform, box));
+    Mat34 have = world_of(f, "drawable", 0),
+          want = world_of(f, "transform", FIXTURE_ROW(f, transform, box));
     assert_memory_equal(&have, &want, sizeof want);
     for (u32 i = 0; i < 8; i++) {
         const f32 *c = f->meshes[MESH_CUBE].vertices[i].position;
@@ -185,14 +185,18 @@ TEST(systems_transform, spheres_hold_their_meshes) {
         for (u32 i = 0; i < 8; i++) {
             const f32 *c = f->meshes[MESH_CUBE].vertices[i].position;
             Vec3 corner = mat34_point(&world, vec3(c[0], c[1], c[2]));
-            Vec3 from = vec3_sub(corner, vec3(d->bounds_x[row], d->bounds_y[row], d->bounds_z[row]));
+            Vec3 from =
+                vec3_sub(corner, vec3(d->bounds_x[row], d->bounds_y[row], d->bounds_z[row]));
             assert_true(vec3_length(from) <= d->bounds_radius[row] * 1.00001f);
         }
     }
     systems_fixture_destroy(f);
 }
 
-typedef struct Stamps { u32 transform, drawable, light, walker; u32 rows; } Stamps;
+typedef struct Stamps {
+    u32 transform, drawable, light, walker;
+    u32 rows;
+} Stamps;
 static Stamps newest_stamps(SystemsFixture *f) {
     const Table *t = &FIXTURE_TABLE(f, Transform, transform)->table;
     const Table *d = &FIXTURE_TABLE(f, Drawable, drawable)->table;
@@ -282,7 +286,8 @@ TEST(systems_table, rows_run_in_order_and_see_their_stamps) {
     assert_string_equal(order, "abab");
     assert_int_equal(seen_last_stamp, stamp);
     assert_true(f->world->stamp > f->systems.last_stamp[5]); // later edits are newer than all rows
-    while (systems_insert(&f->systems, NULL, &b)) {}
+    while (systems_insert(&f->systems, NULL, &b)) {
+    }
     assert_int_equal(f->systems.count, SYSTEMS_CAP);
     systems_fixture_destroy(f);
 }

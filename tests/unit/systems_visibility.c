@@ -45,8 +45,8 @@ TEST(systems_visibility, frustum_planes_are_unit_and_bound_the_clip_volume) {
             const f32 *n = frustum.planes[k];
             least = MIN(least, n[0] * p.x + n[1] * p.y + n[2] * p.z + n[3]);
         }
-        bool inside = clip.w > 0 && fabsf(clip.x) <= clip.w && fabsf(clip.y) <= clip.w &&
-                      clip.z <= clip.w;
+        bool inside =
+            clip.w > 0 && fabsf(clip.x) <= clip.w && fabsf(clip.y) <= clip.w && clip.z <= clip.w;
         if (least > margin) assert_true(inside);
         if (least < -margin) assert_false(inside);
         inside_count += inside;

@@ -1,4 +1,5 @@
-// systems_walk.c: the walker stands, stops at walls, climbs, fits through gaps, falls and comes back.
+// systems_walk.c: the walker stands, stops at walls, climbs, fits through gaps, falls and comes
+// back.
 #include "systems_fixture.h"
 #include "../test.h"
 #include "../../engine/base/random.h"
@@ -29,7 +30,9 @@ static Vec3 feet(const Course *c) {
     u32 row = FIXTURE_ROW(c->f, transform, c->walker);
     return vec3(t->x[row], t->y[row] - EYES_M, t->z[row]);
 }
-static bool grounded(const Course *c) { return FIXTURE_TABLE(c->f, Walker, walker)->grounded[0] != 0; }
+static bool grounded(const Course *c) {
+    return FIXTURE_TABLE(c->f, Walker, walker)->grounded[0] != 0;
+}
 static void go(Course *c, u32 ticks, Input input) {
     for (u32 i = 0; i < ticks; i++) {
         c->f->context.input = input;
@@ -117,8 +120,8 @@ TEST(systems_walk, climbs_steps_up_to_its_limit) {
     for (u32 i = 0; i < COUNT_OF(heights); i++) {
         for (u32 fast = 0; fast < 2; fast++) {
             Course c = course_create();
-            fixture_spawn_mesh(c.f, MESH_CUBE, vec3(0, heights[i] / 2, -6), vec3(4, heights[i], 4), 0,
-                               COLLISION_MESH);
+            fixture_spawn_mesh(c.f, MESH_CUBE, vec3(0, heights[i] / 2, -6), vec3(4, heights[i], 4),
+                               0, COLLISION_MESH);
             course_start(&c, vec3(0, 0, -2));
             go(&c, 30, still);
             go(&c, fast ? 40 : 75, (Input){.move_z = 127, .buttons = fast ? INPUT_RUN : 0});
@@ -179,7 +182,8 @@ TEST(systems_walk, climbs_slopes_up_to_fifty_degrees) {
             Vec3 b = feet(&c);
             assert_memory_equal(&a, &b, sizeof a);
         } else {
-            if (!(p.y < 0.4f && p.z > -2.5f)) fail_msg("%g degrees: y %g z %g", degrees[i], p.y, p.z);
+            if (!(p.y < 0.4f && p.z > -2.5f))
+                fail_msg("%g degrees: y %g z %g", degrees[i], p.y, p.z);
         }
         systems_fixture_destroy(c.f);
     }
@@ -190,7 +194,8 @@ TEST(systems_walk, goes_through_gaps_of_twice_its_radius) {
     for (u32 i = 0; i < COUNT_OF(gaps); i++) {
         Course c = course_create();
         f32 side = 5 + gaps[i] / 2;
-        fixture_spawn_mesh(c.f, MESH_CUBE, vec3(-side, 1.5f, -3), vec3(10, 3, 1), 0, COLLISION_MESH);
+        fixture_spawn_mesh(c.f, MESH_CUBE, vec3(-side, 1.5f, -3), vec3(10, 3, 1), 0,
+                           COLLISION_MESH);
         fixture_spawn_mesh(c.f, MESH_CUBE, vec3(side, 1.5f, -3), vec3(10, 3, 1), 0, COLLISION_MESH);
         course_start(&c, vec3(0.05f, 0, 0)); // a little beside the middle: it slides in
         go(&c, 30, still);
@@ -203,7 +208,8 @@ TEST(systems_walk, goes_through_gaps_of_twice_its_radius) {
 TEST(systems_walk, ceilings_stop_jumps_and_low_tunnels_stop_walkers) {
     Course c = course_create();
     fixture_spawn_mesh(c.f, MESH_CUBE, vec3(0, 2.5f, 0), vec3(4, 1, 4), 0, COLLISION_MESH);
-    fixture_spawn_mesh(c.f, MESH_CUBE, vec3(0, 2.1f, -6), vec3(4, 1, 4), 0, COLLISION_MESH); // 1.6 m
+    fixture_spawn_mesh(c.f, MESH_CUBE, vec3(0, 2.1f, -6), vec3(4, 1, 4), 0,
+                       COLLISION_MESH); // 1.6 m
     course_start(&c, vec3(0, 0, 0));
     go(&c, 30, still);
     f32 highest = 0;
@@ -249,7 +255,8 @@ TEST(systems_walk, falls_out_of_the_level_and_comes_back) {
 
 TEST(systems_walk, moving_boxes_push) {
     Course c = course_create();
-    Entity door = fixture_spawn_mesh(c.f, MESH_CUBE, vec3(3, 1.5f, 0), vec3(1, 3, 2), 0, COLLISION_BOX);
+    Entity door =
+        fixture_spawn_mesh(c.f, MESH_CUBE, vec3(3, 1.5f, 0), vec3(1, 3, 2), 0, COLLISION_BOX);
     course_start(&c, vec3(0, 0, 0));
     go(&c, 30, still);
     TransformTable *t = FIXTURE_TABLE(c.f, Transform, transform);
@@ -295,12 +302,13 @@ TEST(systems_walk, flies_through_everything) {
 static u64 play(u64 seed, u32 ticks) {
     Course c = course_create();
     for (u32 i = 0; i < 60; i++)
-        fixture_spawn_mesh(c.f, i % 4 ? MESH_CUBE : MESH_RAMP,
-                           vec3(random_range(seed, 1, i, -9, 9), random_range(seed, 2, i, 0, 1.2f),
-                                random_range(seed, 3, i, -9, 9)),
-                           vec3(random_range(seed, 4, i, 0.2f, 3), random_range(seed, 5, i, 0.1f, 2),
-                                random_range(seed, 6, i, 0.2f, 3)),
-                           random_range(seed, 7, i, 0, 360), i % 3 ? COLLISION_MESH : COLLISION_BOX);
+        fixture_spawn_mesh(
+            c.f, i % 4 ? MESH_CUBE : MESH_RAMP,
+            vec3(random_range(seed, 1, i, -9, 9), random_range(seed, 2, i, 0, 1.2f),
+                 random_range(seed, 3, i, -9, 9)),
+            vec3(random_range(seed, 4, i, 0.2f, 3), random_range(seed, 5, i, 0.1f, 2),
+                 random_range(seed, 6, i, 0.2f, 3)),
+            random_range(seed, 7, i, 0, 360), i % 3 ? COLLISION_MESH : COLLISION_BOX);
     for (u32 i = 0; i < 4; i++) { // walls around
         bool x = i & 1;
         f32 at = i & 2 ? 10.5f : -10.5f;
@@ -312,7 +320,8 @@ static u64 play(u64 seed, u32 ticks) {
     u64 hash = 0;
     for (u32 i = 0; i < ticks; i++) {
         u32 r = random_u32(seed, 8, i / 20);
-        Input input = {.move_z = (i8)(r & 255), .move_x = (i8)(r >> 8 & 255),
+        Input input = {.move_z = (i8)(r & 255),
+                       .move_x = (i8)(r >> 8 & 255),
                        .look_x = (i16)(r >> 16 & 255) - 128,
                        .buttons = (r >> 24 & 3) == 0 ? INPUT_JUMP : 0};
         if (input.move_z == -128) input.move_z = -127;
