@@ -51,6 +51,8 @@ static DeviceChoice device_judge(Gpu *gpu, VkPhysicalDevice device, const char *
         (!device_has_extension(device, VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME) ||
          !device_has_extension(device, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME)))
         return choice;
+    *why = "uniform blocks smaller than 64 KiB";
+    if (properties.limits.maxUniformBufferRange < GPU_UNIFORM_RANGE) return choice;
     *why = "no VK_KHR_swapchain";
     if (gpu->swap.surface && !device_has_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
         return choice;

@@ -97,7 +97,8 @@ bool compile(const char *name, const ShaderSources *sources, u32 spirv_version,
                         is_13 ? glslang::EShTargetVulkan_1_3 : glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv,
                         is_13 ? glslang::EShTargetSpv_1_6 : glslang::EShTargetSpv_1_5);
-    shader.setDebugInfo(true);
+    // No setDebugInfo: with the plain debug information it crashes (glslang issue 3136); the
+    // options below give what -g gives.
     Includer includer(sources);
     if (!shader.parse(GetDefaultResources(), 110, false, messages, includer)) {
         copy_messages(shader.getInfoLog(), name, error, error_cap);

@@ -2,6 +2,7 @@
 // timers.
 #include "gpu_fixture.h"
 #include "../../engine/base/random.h"
+#include "../../engine/gpu/shader_blobs.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -239,4 +240,32 @@ TEST_GPU(gpu, timers_are_named_and_plausible) {
         gpu_destroy_buffer(gpu, out);
         gpu_fixture_destroy(gpu);
     }
+}
+
+// LUZ_VULKAN12=1 takes the way of a 1.2 device: dynamic rendering and synchronization2 as
+// extensions.
+TEST_GPU(gpu, vulkan_12_with_extensions) {
+    setenv("LUZ_VULKAN12", "1", 1);
+    gpu_fixture_pin_driver();
+    // Validation is right to refuse SPIR-V 1.6 there; drivers take it.
+    const ShaderBlob *blob = shader_blob_find("test_buffer.comp");
+    assert_non_null(blob);
+    Gpu *gpu =
+        gpu_create(&(GpuDesc){.label = "Vulkan 1.2", .validation = blob->words[1] <= 0x00010500});
+    if (!gpu) TEST_SKIP("no Vulkan device");
+    GpuBuffer in = gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "in", .size = 64});
+    gpu_upload_buffer(gpu, in, 0, &(u32){5}, 4);
+    GpuBuffer out = gpu_fixture_readback(gpu, 64);
+    GpuBindLayout layout =
+        gpu_fixture_layout(gpu, GPU_BINDING_STORAGE_BUFFER, GPU_BINDING_STORAGE_BUFFER, 2);
+    GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_buffer.comp", layout, 0, NULL);
+    GpuBindGroup group = gpu_create_bind_group(
+        gpu, &(GpuBindGroupDesc){.label = "group", .layout = layout, .bindings = {{in}, {out}}});
+    run_buffer_shader(gpu, pipeline, group, out, 1, 7);
+    assert_int_equal(*(const u32 *)gpu_buffer_map(gpu, out), 12);
+    gpu_destroy_bind_group(gpu, group);
+    gpu_destroy_pipeline(gpu, pipeline);
+    gpu_destroy_buffer(gpu, in);
+    gpu_destroy_buffer(gpu, out);
+    gpu_fixture_destroy(gpu);
 }

@@ -41,10 +41,13 @@ static GpuPipeline make_pipeline(Gpu *gpu, GpuFormat format, GpuBlend blend, Gpu
                                 .vertex_layout = GPU_VERTEX_MESH});
 }
 
+// Serves as the instance stream as well. As long as one instance a vertex: synchronisation
+// validation 1.3.239 takes instance streams for vertex streams, and reads beyond the end would be
+// its verdict.
 static GpuBuffer make_vertices(Gpu *gpu, const MeshVertex *vertices, u32 count) {
     GpuBuffer buffer = gpu_create_buffer(
-        gpu,
-        &(GpuBufferDesc){.label = "vertices", .size = count * sizeof(MeshVertex), .vertex = true});
+        gpu, &(GpuBufferDesc){
+                 .label = "vertices", .size = count * sizeof(InstanceRecord), .vertex = true});
     gpu_upload_buffer(gpu, buffer, 0, vertices, count * sizeof(MeshVertex));
     return buffer;
 }
@@ -182,7 +185,7 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
     gpu_cmd_push(cmd, (f32[]){1, 1, 1, 1}, 16);
     gpu_cmd_bind_vertices(cmd, 0, buffer, 0);
     gpu_cmd_bind_vertices(cmd, 1, buffer, 0); // the test shader reads no instance
-    gpu_cmd_draw(cmd, 3, 1, 3, 0); // equal where both triangles are
+    gpu_cmd_draw(cmd, 3, 1, 3, 0);            // equal where both triangles are
     gpu_cmd_bind_pipeline(cmd, test);
     gpu_cmd_draw(cmd, 3, 1, 6, 0); // behind the first, before nothing
     gpu_cmd_end_rendering(cmd);
