@@ -19,7 +19,12 @@ bool headless_open(Headless *headless, const ToolCommon *common) {
     const GpuInfo *info = gpu_info(headless->gpu);
     snprintf(headless->device, sizeof headless->device, "%s / %s", info->device_name,
              info->driver_info);
-    headless->renderer = renderer_create(headless->gpu);
+    // The engine takes the best device instead; who names one to a tool wants that one.
+    if (common->device && !strcasestr(info->device_name, common->device))
+        LOG(GPU_NONE, "no usable device is called '%s'; there is '%s'", common->device,
+            info->device_name);
+    else
+        headless->renderer = renderer_create(headless->gpu);
     if (headless->renderer) return true;
     headless_close(headless);
     return false;

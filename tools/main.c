@@ -29,8 +29,8 @@ static void print_help(void) {
 }
 
 void tool_begin(const ToolCommon *common) {
-    // What the environment asks for wins.
-    if ((common->quiet || common->json) && !getenv("LUZ_LOG")) log_set_level(LOG_SEVERITY_WARNING);
+    // Facts of the engine (the device in use, ...) are for those who ask with LUZ_LOG.
+    if (!getenv("LUZ_LOG")) log_set_level(LOG_SEVERITY_WARNING);
     jobs_start(common->threads);
 }
 

@@ -123,8 +123,7 @@ static bool time_frames(Shot *shot) {
     for (u32 i = 0; i < count; i++) {
         f64 wall = clock_now_ms(), cpu = clock_process_cpu_ms();
         const Packet *packet = next_packet(shot);
-        if (!packet || !renderer_render_image(shot->headless.renderer, packet, NULL, NULL))
-            return false;
+        if (!renderer_render_image(shot->headless.renderer, packet, NULL, NULL)) return false;
         cpu = clock_process_cpu_ms() - cpu;
         wall = clock_now_ms() - wall;
         if (i >= WARM_UP_FRAMES) {
@@ -142,7 +141,6 @@ static int draw_one(Shot *shot) {
     const ShotOptions *options = &shot->options;
     session_advance(&shot->session, options->tick);
     const Packet *packet = next_packet(shot);
-    if (!packet) return TOOL_DIFFERENT;
     if (!renderer_warm_up_path(shot->headless.renderer, packet)) return TOOL_ENVIRONMENT;
     if ((options->stats || shot->common.json) && !time_frames(shot)) return TOOL_ENVIRONMENT;
     packet = next_packet(shot);
@@ -162,7 +160,6 @@ static int draw_range(Shot *shot) {
     const u32 *range = shot->options.range;
     session_advance(&shot->session, range[0]);
     const Packet *packet = next_packet(shot);
-    if (!packet) return TOOL_DIFFERENT;
     if (!renderer_warm_up_path(shot->headless.renderer, packet)) return TOOL_ENVIRONMENT;
     Progress progress = progress_begin("ticks", range[1] - range[0] + 1, shot->common.quiet);
     // Each picture is its own: the notes of single files would drown the bar.
@@ -281,6 +278,7 @@ static int shot_draw(Shot *shot) {
     shot->view.camera = camera;
     shot->view.width_px = internal[0];
     shot->view.height_px = internal[1];
+    if (!next_packet(shot)) return TOOL_USAGE; // no such camera: said by the session
     if (!headless_open(&shot->headless, &shot->common)) return TOOL_ENVIRONMENT;
     if (!renderer_set_assets(shot->headless.renderer, &shot->session.assets))
         return TOOL_ENVIRONMENT;

@@ -5,6 +5,7 @@
 #include "recording_internal.h"
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct CheckTable {
@@ -116,6 +117,14 @@ __attribute__((format(printf, 2, 3))) static void say(RecordingDifference *out, 
     va_end(args);
 }
 
+// The fewest digits that read back to the same number.
+static void format_f32(f32 number, char *out, u64 out_cap) {
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(out, out_cap, "%.*g", digits, (f64)number);
+        if (strtof(out, NULL) == number) return;
+    }
+}
+
 static void format_value(const ColumnDesc *desc, u32 value, char *out, u64 out_cap) {
     f32 number;
     memcpy(&number, &value, sizeof number);
@@ -127,7 +136,7 @@ static void format_value(const ColumnDesc *desc, u32 value, char *out, u64 out_c
     if (word)
         snprintf(out, out_cap, "%.*s", (int)strcspn(word, " "), word);
     else if (desc && desc->type == COLUMN_F32)
-        snprintf(out, out_cap, "%.9g", (f64)number);
+        format_f32(number, out, out_cap);
     else if (desc && desc->type == COLUMN_I32)
         snprintf(out, out_cap, "%d", (i32)value);
     else
