@@ -8,23 +8,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool headless_open(Headless *headless, const ToolCommon *common) {
-    *headless = (Headless){0};
+Gpu *headless_gpu(const ToolCommon *common) {
     // Accurate timers: a plain timestamp blames the wrong pass on the software driver.
-    headless->gpu = gpu_create(&(GpuDesc){.label = "luz tool",
-                                          .device = common->device,
-                                          .validation = common->validation,
-                                          .accurate_timers = true});
+    Gpu *gpu = gpu_create(&(GpuDesc){.label = "luz tool",
+                                     .device = common->device,
+                                     .validation = common->validation,
+                                     .accurate_timers = true});
+    // The engine takes the best device instead; who names one to a tool wants that one.
+    if (!gpu || !common->device || strcasestr(gpu_info(gpu)->device_name, common->device))
+        return gpu;
+    LOG(GPU_NONE, "no usable device is called '%s'; there is '%s'", common->device,
+        gpu_info(gpu)->device_name);
+    gpu_destroy(gpu);
+    return NULL;
+}
+
+bool headless_open(Headless *headless, const ToolCommon *common) {
+    *headless = (Headless){.gpu = headless_gpu(common)};
     if (!headless->gpu) return false;
     const GpuInfo *info = gpu_info(headless->gpu);
     snprintf(headless->device, sizeof headless->device, "%s / %s", info->device_name,
              info->driver_info);
-    // The engine takes the best device instead; who names one to a tool wants that one.
-    if (common->device && !strcasestr(info->device_name, common->device))
-        LOG(GPU_NONE, "no usable device is called '%s'; there is '%s'", common->device,
-            info->device_name);
-    else
-        headless->renderer = renderer_create(headless->gpu);
+    headless->renderer = renderer_create(headless->gpu);
     if (headless->renderer) return true;
     headless_close(headless);
     return false;

@@ -13,6 +13,8 @@ typedef struct Headless {
     Renderer *renderer;
     char device[800]; // "llvmpipe (LLVM 15.0.6, 256 bits) / llvmpipe Mesa 22.3.6"
 } Headless;
+// The device that the options ask for, or NULL after a message.
+Gpu *headless_gpu(const ToolCommon *common);
 // False with messages of the engine on stderr (then: TOOL_ENVIRONMENT).
 bool headless_open(Headless *headless, const ToolCommon *common);
 void headless_close(Headless *headless);

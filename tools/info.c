@@ -230,8 +230,7 @@ static void info_settings(Facts *facts) {
 static int info_device(const ToolCommon *common, Facts *facts) {
     fact_text(facts, "version", LUZ_VERSION);
     fact_text(facts, "build", luz_build_id);
-    Gpu *gpu = gpu_create(&(GpuDesc){
-        .label = "luz info", .device = common->device, .validation = common->validation});
+    Gpu *gpu = headless_gpu(common);
     if (gpu) {
         const GpuInfo *info = gpu_info(gpu);
         char text[600];
