@@ -74,6 +74,9 @@ bool app_open_device(App *app, const GpuDesc *window) {
     desc.label = app->desc.title;
     desc.device = app->desc.device;
     desc.validation = app->desc.validation;
+    // The panel shows what a pass costs, also on a driver that would blame its neighbour. Passes
+    // wait for each other anyway.
+    desc.accurate_timers = true;
     app->gpu = gpu_create(&desc);
     if (!app->gpu) return false; // the log says which package to install
     app->renderer = renderer_create(app->gpu);
@@ -285,13 +288,14 @@ static void texts_add_states(App *app, TextList *list) {
             texts_add_line(list, COLOR_HELP, *line);
 }
 
-u32 app_texts(App *app, u32 width_px, u32 height_px, const PacketText2D **out) {
+u32 app_texts(App *app, u32 width_px, u32 height_px, const PacketText2D **out, u32 *boxed) {
     Arena *arena = &app->session.frame;
     TextList *list = ARENA_PUSH(arena, TextList, 1);
     list->y_px = TEXT_TOP_PX;
     *out = list->items;
     texts_add_states(app, list);
     bool covered = app->help || app->level_error[0] || app->shader_error[0];
+    *boxed = covered ? list->count : 0;
     if (!app->desc.hud || covered || !app->session.world) return list->count;
     AppHud hud = {.session = &app->session,
                   .settings = &app->settings,

@@ -157,8 +157,9 @@ bool app_restart(App *app);
 // NULL if there is no world. Valid until the next call.
 const Packet *app_packet(App *app, u32 width_px, u32 height_px);
 // HUD, messages, errors and help, in window pixels: after app_packet, valid as long as the packet. They
-// are not in the packet, so that small internal resolutions do not blur them.
-u32 app_texts(App *app, u32 width_px, u32 height_px, const PacketText2D **out);
+// are not in the packet, so that small internal resolutions do not blur them. The first *boxed of them
+// (errors, help) want a dark ground. Returns how many.
+u32 app_texts(App *app, u32 width_px, u32 height_px, const PacketText2D **out, u32 *boxed);
 // One picture of what the camera sees, without a window; out's pixels lie in the session's frame
 // arena, beside the packet. camera NULL = the player's eyes.
 bool app_picture(App *app, const char *camera, u32 width_px, u32 height_px, RenderImage *out);

@@ -68,8 +68,25 @@ bool debug_ui_wants_keyboard(const DebugUi *ui) { return ui && ImGui::GetIO().Wa
 
 // --- Texts ---
 
-static void draw_texts(DebugUi *ui, const PacketText2D *texts, u32 count) {
+// A dark ground for a block of lines.
+static void draw_box(ImDrawList *list, const PacketText2D *texts, u32 count) {
+    const f32 margin = 6.0f;
+    ImVec2 low(1e9f, 1e9f), high(0.0f, 0.0f);
+    for (u32 i = 0; i < count; i++) {
+        ImVec2 size = ImGui::CalcTextSize(texts[i].text);
+        low = ImVec2(MIN(low.x, texts[i].x_px), MIN(low.y, texts[i].y_px));
+        high = ImVec2(MAX(high.x, texts[i].x_px + size.x), MAX(high.y, texts[i].y_px + size.y));
+    }
+    if (count > 0)
+        list->AddRectFilled(ImVec2(low.x - margin, low.y - margin),
+                            ImVec2(high.x + margin, high.y + margin), IM_COL32(8, 10, 16, 190));
+}
+
+static void draw_texts(DebugUi *ui, App *app, u32 width_px, u32 height_px) {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
+    const PacketText2D *texts;
+    u32 boxed, count = app_texts(app, width_px, height_px, &texts, &boxed);
+    draw_box(list, texts, boxed);
     for (u32 i = 0; i < count; i++) {
         const PacketText2D *text = &texts[i];
         u32 font = 0;
@@ -90,8 +107,8 @@ static void panel_frame_times(const App *app) {
                 app->internal_width_px, app->internal_height_px);
     f32 worst = 0.0f;
     for (f32 ms : app->frame_ms) worst = MAX(worst, ms);
-    ImGui::PlotLines("##frames", app->frame_ms, APP_FRAMES_SHOWN, (int)app->frame_index + 1, nullptr,
-                     0.0f, MAX(worst, 34.0f), ImVec2(-1.0f, 36.0f));
+    ImGui::PlotHistogram("##frames", app->frame_ms, APP_FRAMES_SHOWN, (int)app->frame_index + 1,
+                         nullptr, 0.0f, MAX(worst, 34.0f), ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
 }
 
 static void panel_passes(const App *app) {
@@ -122,12 +139,12 @@ static void panel_counts(const App *app) {
     if (!ImGui::CollapsingHeader("counts", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const PacketCounts *counts = &app->counts;
     RendererStats stats = renderer_stats(app->renderer);
-    ImGui::Text("lights    %u, seen %u, shaded %u", counts->lights_total, counts->lights_visible,
+    ImGui::Text("lights    %u of %u, shaded %u", counts->lights_visible, counts->lights_total,
                 counts->lights_shaded);
-    ImGui::Text("meshes    %u, seen %u", counts->drawables_total, counts->drawables_visible);
+    ImGui::Text("meshes    %u of %u", counts->drawables_visible, counts->drawables_total);
     ImGui::Text("triangles %u", counts->triangles);
     ImGui::Text("draws     %u, barriers %u", stats.draw_calls, stats.barriers);
-    ImGui::Text("fullest tile %u of %u lights", counts->tile_light_max, counts->lights_shaded);
+    ImGui::Text("fullest tile %u lights", counts->tile_light_max);
 }
 
 // Words separated by blanks become the zero-separated list that a combo wants.
@@ -196,8 +213,8 @@ static void panel_level(App *app) {
 }
 
 static void draw_panel(App *app, u32 width_px) {
-    ImGui::SetNextWindowPos(ImVec2((f32)width_px - 288.0f, 8.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(280.0f, 0.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos(ImVec2((f32)width_px - 298.0f, 8.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(290.0f, 0.0f), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("luz", &app->panel, ImGuiWindowFlags_NoFocusOnAppearing)) {
         ImGui::TextUnformatted(gpu_info(app->gpu)->device_name);
         panel_frame_times(app);
@@ -234,14 +251,13 @@ static const Overlay *build_overlay(DebugUi *ui, u32 width_px, u32 height_px) {
     return overlay_build_end(&ui->build);
 }
 
-const Overlay *debug_ui_frame(DebugUi *ui, App *app, const PacketText2D *texts, u32 text_count,
-                              u32 width_px, u32 height_px, bool pointer) {
+const Overlay *debug_ui_frame(DebugUi *ui, App *app, u32 width_px, u32 height_px, bool pointer) {
     ImGuiIO &io = ImGui::GetIO();
     if (pointer) io.ConfigFlags &= ~ImGuiConfigFlags_NoMouse;
     else io.ConfigFlags |= ImGuiConfigFlags_NoMouse;
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    draw_texts(ui, texts, text_count);
+    draw_texts(ui, app, width_px, height_px);
     if (app->panel) draw_panel(app, width_px);
     ImGui::Render();
     return build_overlay(ui, width_px, height_px);

@@ -17,10 +17,9 @@ DebugUi *debug_ui_create(struct GLFWwindow *window);
 void debug_ui_destroy(DebugUi *ui); // NULL is fine
 // The font atlas.
 bool debug_ui_upload(DebugUi *ui, Renderer *renderer);
-// The overlay of this frame: the texts (window pixels), and the panel if app->panel. Valid until the
-// next call. pointer: the mouse is a pointer, not a look.
-const Overlay *debug_ui_frame(DebugUi *ui, App *app, const PacketText2D *texts, u32 text_count,
-                              u32 width_px, u32 height_px, bool pointer);
+// The overlay of this frame: app_texts, and the panel if app->panel. Valid until the next call.
+// pointer: the mouse is a pointer, not a look.
+const Overlay *debug_ui_frame(DebugUi *ui, App *app, u32 width_px, u32 height_px, bool pointer);
 // The panel is using them: not for the game.
 bool debug_ui_wants_mouse(const DebugUi *ui);
 bool debug_ui_wants_keyboard(const DebugUi *ui);

@@ -40,7 +40,7 @@ typedef struct Window {
     u32 resize_failures, device_losses;
     f64 first_loss_ms;
     int restore_x, restore_y, restore_width, restore_height; // before full screen
-    f64 frame_start_ms, idle_ms; // idle: waited for the screen this frame
+    f64 frame_start_ms, wait_ms; // waited for the device or the screen this frame
     u64 frame_count;
     int exit_code;
 } Window;
@@ -264,23 +264,19 @@ static bool draw(Window *window) {
     gpu_swapchain_size(gpu, &width, &height);
     const Packet *packet = app_packet(app, width, height);
     if (!packet) return false;
-    const PacketText2D *texts;
-    u32 text_count = app_texts(app, width, height, &texts);
     bool pointer = !window->device.captured;
     const Overlay *overlay =
-        window->ui_ready
-            ? debug_ui_frame(window->ui, app, texts, text_count, width, height, pointer)
-            : NULL;
+        window->ui_ready ? debug_ui_frame(window->ui, app, width, height, pointer) : NULL;
+    f64 wait_start = clock_now_ms();
     GpuCommands *cmd = gpu_frame_begin(gpu);
     if (!cmd) return false;
-    f64 wait_start = clock_now_ms();
     bool shown = gpu_swapchain_acquire(gpu, cmd);
-    window->idle_ms += clock_now_ms() - wait_start;
+    window->wait_ms += clock_now_ms() - wait_start;
     if (shown) renderer_draw(app->renderer, cmd, packet, true, overlay);
     if (!gpu_frame_end(gpu, false)) return false;
     wait_start = clock_now_ms();
     if (!shown || !gpu_swapchain_present(gpu)) window->must_resize = true;
-    window->idle_ms += clock_now_ms() - wait_start;
+    window->wait_ms += clock_now_ms() - wait_start;
     grant_wishes(window, packet);
     return shown;
 }
@@ -290,6 +286,18 @@ static void sleep_ms(f64 ms) {
     nanosleep(&time, NULL);
 }
 
+// What the frame took without waiting for the screen: with it, a fast machine at 60 pictures a
+// second would always look busy. The device's share comes from its timers, because a busy device and
+// a slow screen make us wait in the same places.
+static f32 work_ms(const Window *window, f32 frame_ms) {
+    GpuTimer timers[GPU_TIMERS_CAP];
+    u32 count = gpu_timers(window->app->gpu, timers, GPU_TIMERS_CAP);
+    if (count == 0) return frame_ms;
+    f32 device_ms = 0.0f;
+    for (u32 i = 0; i < count; i++) device_ms += timers[i].ms;
+    return MIN(frame_ms, frame_ms - (f32)window->wait_ms + device_ms);
+}
+
 static void measure(Window *window) {
     App *app = window->app;
     f64 now = clock_now_ms();
@@ -297,10 +305,8 @@ static void measure(Window *window) {
     app->frame_index = (app->frame_index + 1) % APP_FRAMES_SHOWN;
     app->frame_ms[app->frame_index] = ms;
     app->status_frames++;
-    // Waiting for the screen is no work: without it a fast machine would never get more pixels.
-    f32 work_ms = ms - (f32)window->idle_ms;
-    app->settings.scale =
-        scale_control_update(&window->scale, work_ms, app->settings.target_ms, app->settings.scale);
+    app->settings.scale = scale_control_update(&window->scale, work_ms(window, ms),
+                                               app->settings.target_ms, app->settings.scale);
     if (now < app->next_status_ms) return;
     app->fps = (f32)(app->status_frames * 1000.0 / (now - app->next_status_ms + STATUS_MS));
     app->status_frames = 0;
@@ -313,7 +319,7 @@ static void measure(Window *window) {
 static void frame(Window *window) {
     App *app = window->app;
     window->frame_start_ms = clock_now_ms();
-    window->idle_ms = 0.0;
+    window->wait_ms = 0.0;
     glfwPollEvents();
     if (glfwGetWindowAttrib(window->handle, GLFW_ICONIFIED)) {
         glfwWaitEventsTimeout(STATUS_MS / 1000.0);

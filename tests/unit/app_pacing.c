@@ -97,6 +97,20 @@ TEST(app_pacing, scale_gives_up_at_the_smallest) {
     assert_true(run_machine(&control, (Machine){90, 900, 0}, 20.0f, 1.0f, 300, NULL) == SCALE_MIN);
 }
 
+TEST(app_pacing, scale_is_not_given_away_for_nothing) {
+    // A scene of many triangles: fewer pixels would blur it and gain next to nothing.
+    ScaleControl control = {0};
+    u32 changes = 0;
+    f32 scale = run_machine(&control, (Machine){90, 10, 0.02f}, 33.0f, 1.0f, 200, NULL);
+    assert_true(scale == SCALE_MAX);
+    run_machine(&control, (Machine){90, 10, 0.02f}, 33.0f, scale, 3600, &changes);
+    assert_true(changes <= 10);
+    // Half and half: it goes as far down as pixels still matter.
+    control = (ScaleControl){0};
+    scale = run_machine(&control, (Machine){60, 60, 0.02f}, 33.0f, 1.0f, 200, NULL);
+    assert_true(scale >= 0.45f && scale <= 0.7f);
+}
+
 TEST(app_pacing, one_slow_frame_changes_nothing) {
     ScaleControl control = {0};
     f32 scale = 0.75f;
