@@ -17,6 +17,8 @@ _Static_assert(CAP_STEP % SIMD_WIDTH == 0, "a column's end is a whole vector");
 _Static_assert(sizeof(Table) % sizeof(void *) == 0, "column pointers follow the Table directly");
 _Static_assert(sizeof(f32) == 4 && sizeof(Entity) == 4, "columns have 4-byte values");
 
+// Bytes; arrays at such a distance from each other share few lines of a first-level cache.
+#define STRIDE_BAD     1024
 #define ROWS_FIRST     (4 * CAP_STEP) // rows of a table at its first row
 #define ROW_OF_FIRST   256
 #define POISON_BYTE    0xDD
@@ -64,6 +66,7 @@ void table_reserve(Table *table, u32 row_cap) {
     LUZ_ASSERT(row_cap <= ENTITY_CAP); // one row an entity at most
     if (row_cap <= table->cap) return;
     u32 cap = (u32)ALIGN_UP(row_cap, CAP_STEP), old_cap = table->cap;
+    if ((u64)cap * 4 % STRIDE_BAD == 0) cap += CAP_STEP;
     u64 size = table_block_size(table, cap);
     u32 *block = aligned_alloc(CACHE_LINE, size), *old = table->entity;
     LUZ_ASSERT(block);
