@@ -68,8 +68,8 @@ static Stop between(const Stop *stops, u32 count, u32 index, f32 t) {
                   .fov = f32_lerp(b->fov, c->fov, t)};
 }
 
-void system_tour(SystemContext *context) {
-    World *world = context->world;
+// Every touring camera to where it is at this tick.
+static void place_tours(World *world) {
     TourTable *tours = (TourTable *)world_find_table(world, "tour");
     if (tours->table.count == 0) return;
     Stop stops[STOPS_CAP];
@@ -98,9 +98,13 @@ void system_tour(SystemContext *context) {
     }
 }
 
+void system_tour(SystemContext *context) { place_tours(context->world); }
+
 void tour_on_load(Session *session) {
     World *world = session->world;
-    if (world_find(world, TOUR_CAMERA) != ENTITY_NONE) return;
-    Entity entity = luz_add_camera(world, TOUR_CAMERA, vec3(0, 0, 0), 0, 0);
-    if (entity != ENTITY_NONE) table_add(world_find_table(world, "tour"), entity);
+    if (world_find(world, TOUR_CAMERA) == ENTITY_NONE) {
+        Entity entity = luz_add_camera(world, TOUR_CAMERA, vec3(0, 0, 0), 0, 0);
+        if (entity != ENTITY_NONE) table_add(world_find_table(world, "tour"), entity);
+    }
+    place_tours(world);
 }

@@ -61,8 +61,8 @@ typedef struct AppDesc {
     const char *status_path;                // a line of JSON a second, for tests and curious people
     // Fills out[0 .. cap) with lines of text in window pixels; returns how many.
     u32 (*hud)(const AppHud *hud, PacketText2D *out, u32 cap, void *user);
-    // A key went down: upper-case ASCII for printable ones, else GLFW's number. True = used, the
-    // engine's own meaning is skipped.
+    // A key went down that does not walk (controls.c): upper-case ASCII for printable ones, else
+    // GLFW's number. True = used, the engine's own meaning is skipped.
     bool (*key)(App *app, int key, void *user);
     // A level has been loaded or reloaded: world filled, derived columns set.
     void (*on_load)(Session *session, void *user);

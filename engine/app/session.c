@@ -269,7 +269,9 @@ static void session_adopt(Session *session, const LoadedLevel *fresh, u64 *file_
     if (place) player_place_restore(session, place);
     session_settle(session);
     session->collision = collision_create(session->world, &session->assets);
-    if (session->desc.on_load) session->desc.on_load(session, session->desc.user);
+    if (!session->desc.on_load) return;
+    session->desc.on_load(session, session->desc.user);
+    session_settle(session); // what it added has derived columns as well
 }
 
 bool session_load_below(Session *session, const char *root_path, const char *relative,

@@ -243,8 +243,12 @@ static void simulate(Window *window) {
         controls_take(&window->controls);
         return;
     }
-    for (u32 i = 0; i < ticks && !window->quit; i++)
-        if (!app_tick(app, controls_take(&window->controls))) window->quit = true;
+    for (u32 i = 0; i < ticks && !window->quit; i++) {
+        Input input = controls_take(&window->controls);
+        // Who looks through another camera does not walk blindly.
+        if (app->camera[0]) input = (Input){0};
+        if (!app_tick(app, input)) window->quit = true;
+    }
     app->ticks_ms = (f32)(clock_now_ms() - start);
 }
 
