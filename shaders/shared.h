@@ -71,16 +71,19 @@ typedef struct MeshVertex {
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
 #define SPEC_DIRECTIONALS  9 // how many directional lights
 #define SPEC_LIGHT_BLOCKS  10 // uniform blocks that hold all lights: 1, 2; 0 = too many, use storage
-#define SPEC_COUNT         11
+#define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades in turn (1..8)
+#define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
+#define SPEC_COUNT         13
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
 
 // Tile side in pixels of the light grid (edge tiles are cut by the screen).
 #define TILE_SIZE_PX 16
-// Survivors a subgroup keeps before it shades them (chunked: any number of lights works).
-#define SUBGROUP_LIST_CAP 256
+// Lights of a tile that a subgroup keeps after culling; if more survive it shades the whole list.
+#define SURVIVORS_CAP     512
 #define MATERIALS_CAP     256
+#define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
 #define LIGHT_BLOCK_CAP   2048
 #define SPOT_BLOCK_CAP    4096

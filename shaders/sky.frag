@@ -14,21 +14,21 @@ uvec3 hash3(uvec3 v) {
     return v;
 }
 
-// One star at most in each cell of a cube's faces, soft over about a pixel so it does not blink.
+// One star in every third cell of a cube's faces, soft over about a pixel so it does not blink.
 float stars(vec3 d) {
     vec3 a = abs(d);
     float m = max(a.x, max(a.y, a.z));
     vec2 uv = a.x == m ? d.yz / a.x : a.y == m ? d.xz / a.y : d.xy / a.z;
     uint face = a.x == m ? (d.x > 0.0 ? 0u : 1u) : a.y == m ? (d.y > 0.0 ? 2u : 3u)
                                                             : (d.z > 0.0 ? 4u : 5u);
-    vec2 grid = uv * 60.0 + 60.0;
+    vec2 grid = uv * 48.0 + 48.0;
     uvec3 h = hash3(uvec3(uvec2(grid), face));
     vec2 center = vec2(h.xy & 1023u) / 1023.0 * 0.7 + 0.15;
-    float brightness = float(h.z & 1023u) / 1023.0;
-    brightness *= brightness;
-    brightness *= brightness;
+    // Many faint ones, few bright ones.
+    float brightness = max(float(h.z & 1023u) / 1023.0 * 3.0 - 2.0, 0.0);
+    brightness *= brightness * brightness;
     vec2 offset = fract(grid) - center;
-    float radius = 0.045 + 60.0 * frame.viewport.w;
+    float radius = 0.03 + 48.0 * frame.viewport.w;
     return brightness * max(1.0 - dot(offset, offset) / (radius * radius), 0.0);
 }
 

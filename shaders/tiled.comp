@@ -2,12 +2,16 @@
 // tiled.comp: path `tiled_deferred`: the G-buffer is read once, then the lights of the pixel's tile.
 //
 // A tile's list is made on the CPU from screen rectangles, so it holds lights in front of and
-// behind the surface. Each subgroup therefore culls it again: its pixels span a box; every lane
-// tests one light against the box; survivors are compacted, in order, into a list in shared
-// memory; then every lane loads one survivor and all shade it in turn by shuffle. The sum has the
-// same terms in the same order as without culling, so the bits are the same.
-// Chunked by SUBGROUP_LIST_CAP: any number of lights works. 8x8 groups: 4x4 waste half the lanes
-// of the software driver.
+// behind the surface. A subgroup therefore culls it again for the pixels it is about to shade:
+// their positions span a box; every lane tests one light against the box; survivors are compacted,
+// in order, into shared memory. The sum has the same terms in the same order as without culling, so
+// the bits are the same.
+//
+// A group is 8x8 pixels; an invocation shades PIXELS_PER_LANE of them in turn, so that one cull
+// serves 64 pixels where subgroups are small (software driver: 8 lanes). In the light loop a
+// survivor's index is made uniform by a shuffle: a uniform block read at a uniform address is a
+// scalar load there, a quarter of the price of shuffling the light's eight floats.
+// If a list of survivors overflows SURVIVORS_CAP, the whole tile's list is shaded: no light is lost.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -16,7 +20,8 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "gbuffer.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = SPEC_PIXELS_PER_LANE) const uint PIXELS_PER_LANE = 1;
+layout(local_size_x_id = SPEC_TILED_GROUP) in; // 64 / PIXELS_PER_LANE
 
 layout(std430, set = 0, binding = BINDING_TILES) readonly buffer TileBuffer { TileRecord tiles[]; };
 layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBuffer {
@@ -24,94 +29,115 @@ layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBu
 };
 layout(set = 0, binding = BINDING_HDR_STORAGE, rgba16f) writeonly uniform image2D hdr;
 
-// 64 invocations in subgroups of at least 4.
-shared uint survivors[16 * SUBGROUP_LIST_CAP];
+// A list for each subgroup; they have 4 lanes at least.
+shared uint survivors[(64 / PIXELS_PER_LANE) / 4 * SURVIVORS_CAP];
 
-vec3 shade_points(Surface s, uint list_base, uint count) {
-    vec3 sum = vec3(0.0);
-    uint dummy = flow.counts2.z;
-    for (uint b = 0u; b < count; b += gl_SubgroupSize) {
-        uint k = b + gl_SubgroupInvocationID;
-        uint index = k < count ? survivors[list_base + min(k, count - 1u)] : dummy;
-        vec4 position = light_position(index), color = light_color(index);
-        uint end = min(gl_SubgroupSize, count - b);
-        for (uint j = 0u; j < end; j++)
-            sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j).rgb);
-    }
-    return sum;
+// The pixel that this lane shades in a round.
+ivec2 pixel_of(uint round) {
+    uint q = (gl_SubgroupID * PIXELS_PER_LANE + round) * gl_SubgroupSize + gl_SubgroupInvocationID;
+    return ivec2(gl_WorkGroupID.xy * 8u) + ivec2(q & 7u, q >> 3u);
 }
 
-vec3 shade_spots(Surface s, uint list_base, uint count) {
-    vec3 sum = vec3(0.0);
-    uint dummy = flow.counts2.z, point_count = flow.counts.x;
-    for (uint b = 0u; b < count; b += gl_SubgroupSize) {
-        uint k = b + gl_SubgroupInvocationID;
-        uint index = k < count ? survivors[list_base + min(k, count - 1u)] : dummy;
-        uint spot = k < count ? index - point_count : 0u;
-        vec4 position = light_position(index), color = light_color(index);
-        vec4 direction = spot_direction(spot);
-        uint end = min(gl_SubgroupSize, count - b);
-        for (uint j = 0u; j < end; j++)
-            sum += light_spot(s, subgroupShuffle(position, j), subgroupShuffle(color, j),
-                              subgroupShuffle(direction, j));
-    }
-    return sum;
-}
-
-// Compacts list entries [first, last) that touch the box into this subgroup's shared list, until
-// the list might overflow. Returns the count; *next is where to go on.
-uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, out uint next) {
-    uint count = 0u, b = first;
-    subgroupBarrier(); // nobody still reads the list of the chunk before
-    for (; b < last && count + gl_SubgroupSize <= SUBGROUP_LIST_CAP; b += gl_SubgroupSize) {
+// Appends list entries [first, last) that touch the box. Returns the new count, which may pass the
+// cap: then nothing more was stored.
+uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uint count) {
+    for (uint b = first; b < last; b += gl_SubgroupSize) {
         uint k = b + gl_SubgroupInvocationID;
         uint index = light_indices[min(k, last - 1u)];
         vec4 position = light_position(index);
-        vec3 outside = max(box_min - position.xyz, vec3(0.0)) + max(position.xyz - box_max, vec3(0.0));
-        bool hit = k < last && (SUBGROUP_CULL == 0u || dot(outside, outside) * position.w < 1.0);
+        vec3 outside =
+            max(box_min - position.xyz, vec3(0.0)) + max(position.xyz - box_max, vec3(0.0));
+        bool hit = k < last && dot(outside, outside) * position.w < 1.0;
         uvec4 ballot = subgroupBallot(hit);
-        if (hit) survivors[list_base + count + subgroupBallotExclusiveBitCount(ballot)] = index;
+        uint slot = count + subgroupBallotExclusiveBitCount(ballot);
+        if (hit && slot < SURVIVORS_CAP) survivors[list_base + slot] = index;
         count += subgroupBallotBitCount(ballot);
     }
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
-    next = b;
     return count;
+}
+
+// Entries [first, last) of the survivors, or of the tile's own list.
+uint list_entry(bool from_tile, uint at) { return from_tile ? light_indices[at] : survivors[at]; }
+
+vec3 shade_points(Surface s, bool from_tile, uint first, uint last) {
+    vec3 sum = vec3(0.0);
+    for (uint b = first; b < last; b += gl_SubgroupSize) {
+        uint mine = list_entry(from_tile, min(b + gl_SubgroupInvocationID, last - 1u));
+        uint end = min(gl_SubgroupSize, last - b);
+        if (LIGHT_BLOCKS != 0u) {
+            for (uint j = 0u; j < end; j++) {
+                uint index = subgroupShuffle(mine, j);
+                sum += light_point(s, light_position(index), light_color(index).rgb);
+            }
+        } else {
+            vec4 position = light_position(mine), color = light_color(mine);
+            for (uint j = 0u; j < end; j++)
+                sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j).rgb);
+        }
+    }
+    return sum;
+}
+
+vec3 shade_spots(Surface s, bool from_tile, uint first, uint last, uint point_count) {
+    vec3 sum = vec3(0.0);
+    for (uint b = first; b < last; b += gl_SubgroupSize) {
+        uint mine = list_entry(from_tile, min(b + gl_SubgroupInvocationID, last - 1u));
+        uint end = min(gl_SubgroupSize, last - b);
+        for (uint j = 0u; j < end; j++) {
+            uint index = subgroupShuffle(mine, j);
+            sum += light_spot(s, light_position(index), light_color(index),
+                              spot_direction(index - point_count));
+        }
+    }
+    return sum;
 }
 
 void main() {
     ivec2 size = ivec2(frame.viewport.xy);
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 clamped = min(pixel, size - 1);
-    GbufferPixel g = gbuffer_read(clamped);
-    vec3 position = position_from_depth(vec2(clamped) + 0.5, g.depth);
-    Surface s = surface_make(position, g.normal, g.albedo, g.material);
-
-    bool lit = g.depth > 0.0;
-    vec3 box_min = subgroupMin(lit ? position : vec3(1e30));
-    vec3 box_max = subgroupMax(lit ? position : vec3(-1e30));
-
     uvec2 tile = gl_WorkGroupID.xy / (TILE_SIZE_PX / 8);
     uvec4 list = tiles[tile.y * flow.counts.w + tile.x].list;
-    uint list_base = gl_SubgroupID * SUBGROUP_LIST_CAP;
-    // A subgroup that sees only sky has nothing to shade: an empty loop, not a branch.
-    bool any_lit = subgroupAny(lit);
+    uint point_count = flow.counts.x;
 
-    vec3 sum = vec3(0.0);
-    uint next = list.x, end = any_lit ? list.x + list.y : list.x;
-    while (next < end) {
-        uint count = cull(next, end, box_min, box_max, list_base, next);
-        sum += shade_points(s, list_base, count);
+    vec3 lane_min = vec3(1e30), lane_max = vec3(-1e30);
+    for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
+        ivec2 pixel = min(pixel_of(round), size - 1);
+        float depth = texelFetch(gbuffer_depth, pixel, 0).x;
+        vec3 position = position_from_depth(vec2(pixel) + 0.5, depth);
+        lane_min = min(lane_min, depth > 0.0 ? position : vec3(1e30));
+        lane_max = max(lane_max, depth > 0.0 ? position : vec3(-1e30));
     }
-    if (SPOTS != 0u) {
-        next = list.x + list.y;
-        end = any_lit ? next + list.z : next;
-        while (next < end) {
-            uint count = cull(next, end, box_min, box_max, list_base, next);
-            sum += shade_spots(s, list_base, count);
-        }
+    vec3 box_min = subgroupMin(lane_min), box_max = subgroupMax(lane_max);
+
+    // Empty loops where only sky is seen, or where nothing is to be culled: a branch would not save
+    // the work on the software driver.
+    uint list_base = gl_SubgroupID * SURVIVORS_CAP;
+    bool any_lit = box_min.x <= box_max.x, cull_list = any_lit && SUBGROUP_CULL != 0u;
+    uint points = 0u, all = 0u;
+    if (SUBGROUP_CULL != 0u) {
+        points = cull(list.x, cull_list ? list.x + list.y : list.x, box_min, box_max, list_base, 0u);
+        all = points;
+        if (SPOTS != 0u)
+            all = cull(list.x + list.y, cull_list ? list.x + list.y + list.z : 0u, box_min, box_max,
+                       list_base, points);
+        subgroupMemoryBarrierShared();
+        subgroupBarrier();
     }
-    vec3 radiance = light_base(s, g.albedo, g.material) + sum * materials[g.material].emissive.w;
-    if (all(lessThan(pixel, size)))
-        imageStore(hdr, pixel, vec4(lit ? radiance : vec3(0.0), 1.0));
+    bool from_tile = SUBGROUP_CULL == 0u || all > SURVIVORS_CAP;
+    uint first = from_tile ? list.x : list_base;
+    uint middle = first + (from_tile ? list.y : points);
+    uint last = middle + (from_tile ? list.z : all - points);
+
+    for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
+        ivec2 pixel = pixel_of(round);
+        ivec2 clamped = min(pixel, size - 1);
+        GbufferPixel g = gbuffer_read(clamped);
+        vec3 position = position_from_depth(vec2(clamped) + 0.5, g.depth);
+        Surface s = surface_make(position, g.normal, g.albedo, g.material);
+        vec3 sum = shade_points(s, from_tile, any_lit ? first : middle, middle);
+        if (SPOTS != 0u) sum += shade_spots(s, from_tile, any_lit ? middle : last, last, point_count);
+        vec3 radiance =
+            light_base(s, g.albedo, g.material) + sum * materials[g.material].emissive.w;
+        if (pixel.x < size.x && pixel.y < size.y)
+            imageStore(hdr, pixel, vec4(g.depth > 0.0 ? radiance : vec3(0.0), 1.0));
+    }
 }

@@ -76,7 +76,7 @@ static void spawn_sun(LevelReader *reader) {
     l->kind[row] = LIGHT_DIRECTIONAL;
     l->color_g[row] = 0.95f;
     l->color_b[row] = 0.86f;
-    l->intensity[row] = 3;
+    l->intensity[row] = 9;
     l->casts_shadow[row] = true;
     l->is_static[row] = true;
 }

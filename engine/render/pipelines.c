@@ -67,7 +67,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
         .fragment = "deferred_resolve.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
         .cull = GPU_CULL_NONE},
     [PIPELINE_TILED] = {.label = "tiled", .compute = "tiled.comp",
-        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_SUBGROUP_CULL)},
+        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_SUBGROUP_CULL) |
+                     SPEC_BIT(SPEC_PIXELS_PER_LANE) | SPEC_BIT(SPEC_TILED_GROUP)},
     [PIPELINE_SKY] = {.label = "sky", .vertex = "fullscreen.vert", .fragment = "sky.frag",
         .targets = {RESOURCE_HDR}, .target_count = 1, .has_depth = true, .depth = GPU_DEPTH_TEST,
         .cull = GPU_CULL_NONE},
@@ -118,8 +119,20 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
     return gpu_create_pipeline(renderer->gpu, &desc);
 }
 
+// The software driver stops a shader silently after 65,535 loop iterations in all (nested ones
+// counted together): a tile with very many lights must not be shaded by 8 rounds of one invocation.
+#define LOOP_ITERATIONS_SAFE 60000
+
+static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
+    u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
+    while (pixels > 1 && (u64)packet->counts.tile_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
+        pixels /= 2;
+    return pixels;
+}
+
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
                          bool alpha_mask, bool double_sided) {
+    u32 pixels_per_lane = tiled_pixels_per_lane(renderer, packet);
     const RenderSettings *settings = &packet->settings;
     PipelineKey key = {.kind = kind, .double_sided = double_sided};
     u32 spec[SPEC_COUNT] = {
@@ -132,6 +145,8 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,
         [SPEC_TILE_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
         [SPEC_TONEMAP] = settings->tonemap,
+        [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
+        [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
         [SPEC_DIRECTIONALS] = packet->directionals.count,
         [SPEC_LIGHT_BLOCKS] = packet->spots.count > SPOT_BLOCK_CAP ? 0
                               : packet->lights.count <= LIGHT_BLOCK_CAP     ? 1

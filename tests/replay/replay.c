@@ -82,6 +82,7 @@ TEST_GPU(replay, recording_of_20_seconds) {
 TEST_GPU(replay, frame_file_in_all_paths) {
     int code;
     const char *frame = test_temp_path("frame.luzf"), *png = test_temp_path("a.png");
+    const char *other = test_temp_path("b.png");
     const char *output = studio_shell(
         &code,
         "%s/luz shot data/levels/cornell.toml -o %s --size 160x90 --camera main --record-frame %s",
@@ -89,7 +90,6 @@ TEST_GPU(replay, frame_file_in_all_paths) {
     if (code != 0) fail_msg("luz shot ended with %d: %s", code, output);
     static const char *const paths[] = {"tiled_deferred", "deferred", "forward"};
     for (u32 i = 0; i < COUNT_OF(paths); i++) {
-        const char *other = test_temp_path("b.png");
         output = studio_shell(&code, "%s/luz replay %s --path %s -o %s", studio_build_directory(),
                               frame, paths[i], other);
         if (code != 0) fail_msg("luz replay --path %s ended with %d: %s", paths[i], code, output);
