@@ -45,7 +45,7 @@ static void info_assets(Facts *facts, const AssetStore *assets) {
     for (u32 i = 1; i < assets->mesh_count; i++) {
         const Mesh *mesh = &assets->meshes[i];
         triangles += mesh->index_count / 3;
-        mesh_bytes += (u64)mesh->vertex_count * sizeof(MeshVertex) + 4ull * mesh->index_count;
+        mesh_bytes += (u64)mesh->vertex_count * sizeof(MeshVertex) + 4ull * mesh->total_index_count;
     }
     for (u32 i = 1; i < assets->texture_count; i++) {
         const Texture *texture = &assets->textures[i];

@@ -31,12 +31,22 @@ extern "C" {
 #define ASSET_LIGHTS_MAX         65536 // per model
 #define ASSET_NODE_DEPTH_MAX     256
 
+// A range of a mesh's indices. error: how far its surface lies from the full mesh, about, in
+// metres of mesh space; 0 for the full mesh.
+typedef struct MeshLod {
+    u32 first_index, index_count;
+    f32 error;
+} MeshLod;
+
 // One triangle list. Vertices are MeshVertex of shaders/shared.h (32 bytes), already ordered for
-// the vertex cache and overdraw. Bounds in mesh space.
+// the vertex cache and overdraw. Bounds in mesh space. Levels of detail share the vertices; their
+// indices lie after each other, lods[0] is the full mesh, errors never fall.
 typedef struct Mesh {
     const MeshVertex *vertices;
-    const u32 *indices;
-    u32 vertex_count, index_count;
+    const u32 *indices;            // [total_index_count]
+    u32 vertex_count, index_count; // index_count: of the full mesh
+    u32 total_index_count, lod_count;
+    MeshLod lods[MESH_LODS_CAP];
     Vec3 min, max;      // box
     Vec3 center;        // sphere
     f32 radius;
@@ -148,8 +158,9 @@ u32 asset_load_texture(AssetStore *store, const FileRoot *root, const char *path
 const char *asset_texture_path(const AssetStore *store, u32 texture);
 
 // Copies raw data into the store (captures put meshes and textures back this way). Ids, 0 at a
-// limit. The caller has checked indices < vertex_count and sizes. with_mips: rgba is level 0 alone
-// and the chain behind it is made here, always the same for the same level 0.
+// limit. The caller has checked indices < vertex_count and sizes. Coarser levels of detail are made
+// here, always the same for the same mesh. with_mips: rgba is level 0 alone and the chain behind
+// it is made here, always the same for the same level 0.
 u32 asset_add_mesh(AssetStore *store, const MeshVertex *vertices, u32 vertex_count,
                    const u32 *indices, u32 index_count);
 u32 asset_add_texture(AssetStore *store, const u8 *rgba, u32 width, u32 height, TextureKind kind,

@@ -69,6 +69,13 @@ Vec3 mesh_any_tangent(Vec3 normal);
 // (local * mirror) the product looks the same and its determinant is positive. 0 at a limit.
 u32 mesh_add_mirrored(AssetStore *store, u32 mesh);
 
+// ---- mesh_lods.c ----
+
+// Coarser levels of a full mesh: vertices, indices, counts and bounds are filled in. Fills lods,
+// lod_count and total_index_count. The indices of the coarser levels, total_index_count -
+// index_count of them, in scratch memory; NULL if there are none.
+const u32 *mesh_make_lods(Arena *scratch, Mesh *mesh);
+
 // ---- image.c, image_check.c, image_mips.c ----
 
 // Reads the header only. False with a reason: not an image we read, or over the side limit.

@@ -64,7 +64,7 @@ bool asset_store_create(AssetStore *store) {
     static const u32 no_indices[1];
     static const u8 white[4] = {255, 255, 255, 255};
     static const ModelMaterial plain = {.name = "", .albedo = {0.8f, 0.8f, 0.8f, 1}, .power = 1};
-    store->meshes[0] = (Mesh){.vertices = no_vertices, .indices = no_indices};
+    store->meshes[0] = (Mesh){.vertices = no_vertices, .indices = no_indices, .lod_count = 1};
     store->textures[0] = (Texture){.pixels = white, .width = 1, .height = 1, .mip_count = 1};
     store->models[0] = (Model){.name = "", .materials = &plain, .material_count = 1};
     store->mesh_count = store->texture_count = store->model_count = 1;
@@ -154,30 +154,48 @@ static void mesh_find_bounds(Mesh *mesh) {
     mesh->radius = sqrtf(squared);
 }
 
+// Points the mesh at copies of its own. False: no room.
+static bool copy_mesh(AssetStore *store, Mesh *mesh, const u32 *coarser) {
+    u64 vertex_size = sizeof(MeshVertex) * (u64)mesh->vertex_count;
+    u64 index_size = sizeof(u32) * (u64)mesh->index_count;
+    u64 total_size = sizeof(u32) * (u64)mesh->total_index_count;
+    if (!arena_can_push(&store->arena, vertex_size + total_size + 4 * CACHE_LINE, CACHE_LINE))
+        return false;
+    MeshVertex *vertices = ARENA_PUSH_COLUMN(&store->arena, MeshVertex, MAX(mesh->vertex_count, 1));
+    u32 *indices = ARENA_PUSH_COLUMN(&store->arena, u32, MAX(mesh->total_index_count, 1));
+    if (vertex_size) memcpy(vertices, mesh->vertices, vertex_size);
+    if (index_size) memcpy(indices, mesh->indices, index_size);
+    if (total_size > index_size)
+        memcpy(indices + mesh->index_count, coarser, total_size - index_size);
+    mesh->vertices = vertices;
+    mesh->indices = indices;
+    return true;
+}
+
 u32 asset_add_mesh(AssetStore *store, const MeshVertex *vertices, u32 vertex_count,
                    const u32 *indices, u32 index_count) {
-    u64 vertex_size = sizeof(MeshVertex) * (u64)vertex_count;
-    u64 index_size = sizeof(u32) * (u64)index_count;
     if (store->mesh_count >= ASSET_MESHES_MAX) {
         LOG(ASSET_LIMIT, "more than %u meshes", ASSET_MESHES_MAX);
         return 0;
     }
-    if (vertex_count > ASSET_VERTICES_MAX || index_count > ASSET_INDICES_MAX ||
-        !arena_can_push(&store->arena, vertex_size + index_size + 2 * CACHE_LINE, CACHE_LINE)) {
+    Mesh mesh = {.vertices = vertices,
+                 .indices = indices,
+                 .vertex_count = vertex_count,
+                 .index_count = index_count};
+    u64 mark = arena_mark(&store->scratch);
+    bool fits = vertex_count <= ASSET_VERTICES_MAX && index_count <= ASSET_INDICES_MAX;
+    if (fits) {
+        if (vertex_count) mesh_find_bounds(&mesh);
+        const u32 *coarser = mesh_make_lods(&store->scratch, &mesh);
+        fits = copy_mesh(store, &mesh, coarser);
+    }
+    arena_rewind(&store->scratch, mark);
+    if (!fits) {
         LOG(ASSET_LIMIT, "a mesh of %u vertices and %u indices is too large", vertex_count,
             index_count);
         return 0;
     }
-    MeshVertex *own_vertices = ARENA_PUSH_COLUMN(&store->arena, MeshVertex, MAX(vertex_count, 1));
-    u32 *own_indices = ARENA_PUSH_COLUMN(&store->arena, u32, MAX(index_count, 1));
-    if (vertex_count) memcpy(own_vertices, vertices, vertex_size);
-    if (index_count) memcpy(own_indices, indices, index_size);
-    Mesh *mesh = &store->meshes[store->mesh_count];
-    *mesh = (Mesh){.vertices = own_vertices,
-                   .indices = own_indices,
-                   .vertex_count = vertex_count,
-                   .index_count = index_count};
-    if (vertex_count) mesh_find_bounds(mesh);
+    store->meshes[store->mesh_count] = mesh;
     return store->mesh_count++;
 }
 

@@ -165,6 +165,7 @@ static const char *check_draws(const Packet *packet, PacketSection section, u32 
             return "draw names a mesh that is not there";
         if (draw->material >= packet->materials.count)
             return "draw names a material that is not there";
+        if (draw->lod >= MESH_LODS_CAP) return "draw names a level of detail that no mesh has";
         if (draw->instance_count == 0 ||
             (u64)draw->first_instance + draw->instance_count > packet->instances.count)
             return "draw names instances that are not there";

@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 #define PACKET_MAGIC   0x4B505A4Cu // "LZPK"
-#define PACKET_VERSION 1u
+#define PACKET_VERSION 2u
 
 typedef struct PacketSection { u32 offset, count; } PacketSection; // bytes, elements
 
@@ -24,6 +24,7 @@ typedef struct PacketDraw {
     u32 mesh;     // asset store id
     u32 material; // index into materials
     u32 first_instance, instance_count;
+    u32 lod;      // level of detail; a mesh that has fewer shows its last one
 } PacketDraw;
 
 // What the renderer needs of a material beside its MaterialRecord.
@@ -49,7 +50,7 @@ typedef enum PacketFlags {
 // X(name, element type)
 #define PACKET_SECTIONS(X)                                                                 \
     X(instances, InstanceRecord)       /* visible ones, in draw order; then shadow casters */ \
-    X(opaque_draws, PacketDraw)        /* alpha mode opaque, sorted by material and mesh */  \
+    X(opaque_draws, PacketDraw)        /* alpha mode opaque, near to far in bands */         \
     X(mask_draws, PacketDraw)          /* alpha mode mask */                                 \
     X(blend_draws, PacketDraw)         /* alpha mode blend, far to near */                   \
     X(emissive_draws, PacketDraw)      /* those of the above with an emissive texture */     \
@@ -105,7 +106,7 @@ Packet *packet_allocate(Arena *arena, const PacketSizes *sizes);
 #define PACKET_WRITE(packet, section, Type) ((Type *)((u8 *)(packet) + (packet)->section.offset))
 
 // Is this block from a stranger safe to render? Checks magic, version, size, every section's range
-// and alignment, every index (meshes < mesh_count, textures < texture_count, instances, materials,
+// and alignment, every index (meshes < mesh_count, levels of detail, textures < texture_count, instances, materials,
 // lights, tiles), finite matrices, resolution limits. Returns NULL if all is well, else a sentence.
 const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 texture_count);
 

@@ -22,6 +22,8 @@ typedef enum DebugView {
     VIEW_COUNT
 } DebugView;
 
+typedef enum SpecularPower { SPECULAR_FAST, SPECULAR_EXACT, SPECULAR_COUNT } SpecularPower;
+
 // S(type, name, default, min, max, words, help): type F32 | BOOL | ENUM | U32
 #define RENDER_SETTINGS(S)                                                                         \
     S(ENUM, path, PATH_TILED_DEFERRED, 0, PATH_COUNT - 1, "forward deferred tiled_deferred",       \
@@ -34,7 +36,11 @@ typedef enum DebugView {
     S(BOOL, shadows, 1, 0, 1, "", "shadow map of the first directional light that casts")          \
     S(BOOL, light_culling, 1, 0, 1, "", "lights outside the view are left out")                    \
     S(BOOL, mesh_culling, 1, 0, 1, "", "drawables outside the view are left out")                  \
+    S(F32, lod_error_px, 0.7f, 0.0f, 16.0f, "",                                                    \
+      "how far a simpler mesh may lie from the full one on the screen; 0 = always full detail")    \
     S(BOOL, subgroup_cull, 1, 0, 1, "", "tiled: each subgroup culls its tile's list by its box")   \
+    S(ENUM, specular, SPECULAR_FAST, 0, SPECULAR_COUNT - 1, "fast exact",                          \
+      "power of highlights: exp2 of a Pade logarithm, or pow() itself")                            \
     S(BOOL, tonemap, 1, 0, 1, "", "Reinhard; off = clamp")                                         \
     S(F32, exposure, 1.0f, 0.0f, 1000.0f, "", "factor on the level's exposure")                    \
     S(F32, light_gain, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")           \

@@ -27,7 +27,7 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
     u32 bound_material = UINT32_MAX;
     for (u32 i = 0; i < section.count; i++) {
         const PacketDraw *draw = &draws[i];
-        if (draw->mesh >= r->mesh_count || r->meshes[draw->mesh].index_count == 0) continue;
+        if (draw->mesh >= r->mesh_count || r->meshes[draw->mesh].lods[0].index_count == 0) continue;
         const PacketMaterial *material = &materials[draw->material];
         GpuPipeline pipeline =
             pipeline_get(r, c->packet, kind, alpha_mask, material->double_sided != 0);
@@ -42,10 +42,11 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
             bound_material = draw->material;
         }
         const GpuMesh *mesh = &r->meshes[draw->mesh];
-        gpu_cmd_draw_indexed(c->cmd, mesh->index_count, draw->instance_count, mesh->first_index,
+        const MeshLod *lod = &mesh->lods[MIN(draw->lod, mesh->lod_count - 1)];
+        gpu_cmd_draw_indexed(c->cmd, lod->index_count, draw->instance_count, lod->first_index,
                              mesh->vertex_offset, draw->first_instance);
         r->stats.draw_calls++;
-        r->stats.triangles += mesh->index_count / 3 * draw->instance_count;
+        r->stats.triangles += lod->index_count / 3 * draw->instance_count;
     }
 }
 

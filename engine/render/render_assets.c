@@ -1,7 +1,7 @@
 // render_assets.c: the level's meshes and textures on the device.
 //
-// Data in: an AssetStore. Data out: one vertex and one index buffer with all meshes, a texture an
-// asset texture, bind groups per set of material textures. Called by renderer.c and passes.c. Does
+// Data in: an AssetStore. Data out: one vertex and one index buffer with all meshes and
+// their levels of detail, a texture an asset texture, bind groups per set of material textures. Called by renderer.c and passes.c. Does
 // not stream: a level is uploaded once.
 #include "render_internal.h"
 #include "../base/log.h"
@@ -65,7 +65,7 @@ static bool meshes_upload(Renderer *renderer, const AssetStore *assets) {
     u64 vertex_count = 0, index_count = 0;
     for (u32 i = 0; i < assets->mesh_count; i++) {
         vertex_count += assets->meshes[i].vertex_count;
-        index_count += assets->meshes[i].index_count;
+        index_count += assets->meshes[i].total_index_count;
     }
     if (vertex_count > INT32_MAX || index_count > UINT32_MAX) {
         LOG(RENDER_LIMIT, "meshes of the level: %llu vertices, %llu indices are more than 32 bits",
@@ -87,12 +87,17 @@ static bool meshes_upload(Renderer *renderer, const AssetStore *assets) {
         if (mesh->vertex_count)
             gpu_upload_buffer(gpu, renderer->vertices, vertex * sizeof(MeshVertex), mesh->vertices,
                               (u64)mesh->vertex_count * sizeof(MeshVertex));
-        if (mesh->index_count)
+        if (mesh->total_index_count)
             gpu_upload_buffer(gpu, renderer->indices, index * sizeof(u32), mesh->indices,
-                              (u64)mesh->index_count * sizeof(u32));
-        renderer->meshes[i] = (GpuMesh){mesh->index_count, (u32)index, (i32)vertex};
+                              (u64)mesh->total_index_count * sizeof(u32));
+        GpuMesh *out = &renderer->meshes[i];
+        *out = (GpuMesh){.lod_count = mesh->lod_count, .vertex_offset = (i32)vertex};
+        for (u32 lod = 0; lod < mesh->lod_count; lod++) {
+            out->lods[lod] = mesh->lods[lod];
+            out->lods[lod].first_index += (u32)index;
+        }
         vertex += mesh->vertex_count;
-        index += mesh->index_count;
+        index += mesh->total_index_count;
     }
     return true;
 }

@@ -108,7 +108,8 @@ extern const Pass present_pass;  // after any path, when drawing to the window
 // --- Assets on the device (render_assets.c) ---
 
 typedef struct GpuMesh {
-    u32 index_count, first_index;
+    MeshLod lods[MESH_LODS_CAP]; // first_index in the buffer of all meshes
+    u32 lod_count;
     i32 vertex_offset;
 } GpuMesh;
 typedef struct MaterialGroup {

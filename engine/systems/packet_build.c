@@ -21,7 +21,7 @@ static PacketView make_view(const PacketBuildDesc *desc) {
     Mat34 world = mat34_identity();
     if (place != ROW_NONE) columns_get_mat34(&transforms->w00, place, world.m);
     f32 fov_deg = 60.0f;
-    PacketView view = {.near = 0.1f};
+    PacketView view = {.near = 0.1f, .height_px = (f32)desc->height_px};
     if (lens != ROW_NONE) {
         fov_deg = CLAMP(cameras->fov[lens], 1.0f, 170.0f);
         view.near = CLAMP(cameras->near[lens], 1e-4f, 1e3f);
@@ -165,9 +165,9 @@ static u64 hash_shadow(const Packet *packet, const Parts *parts, u64 store_stamp
         for (u32 i = 0; i < lists[list].count; i++) {
             const PacketMaterial *binding = &parts->palette->bindings[draws[i].material];
             f32 cutoff = parts->palette->records[draws[i].material].albedo[3];
-            u32 words[6] = {list, draws[i].mesh, draws[i].instance_count, binding->double_sided,
-                            binding->albedo_texture};
-            memcpy(&words[5], &cutoff, sizeof cutoff);
+            u32 words[7] = {list, draws[i].mesh, draws[i].lod, draws[i].instance_count,
+                            binding->double_sided, binding->albedo_texture};
+            memcpy(&words[6], &cutoff, sizeof cutoff);
             key = hash_bytes(words, sizeof words, key);
         }
     }
@@ -308,7 +308,7 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
 
     parts.palette = packet_collect_materials(desc.world, scratch);
     parts.draws = packet_collect_draws(&desc, &parts.view, parts.palette, visible.rows,
-                                       visible.count, false, scratch);
+                                       visible.count, NULL, scratch);
     for (u32 alpha = 0; alpha < 3; alpha++)
         for (u32 i = 0; i < parts.draws.counts[alpha]; i++)
             parts.emissive_count += draw_is_emissive(parts.palette, &parts.draws.lists[alpha][i]);
@@ -318,7 +318,7 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
                                            environment.shadow_distance, parts.shadow_size_px);
         RowList casters = cull_drawables(desc.world, &parts.shadow_fit.frustum, scratch);
         parts.shadow = packet_collect_draws(&desc, &parts.view, parts.palette, casters.rows,
-                                            casters.count, true, scratch);
+                                            casters.count, &parts.shadow_fit, scratch);
         shadow_fit_casters(&parts.shadow_fit, WORLD_TABLE(desc.world, Drawable, drawable),
                            parts.shadow.rows, parts.shadow.row_count);
     }

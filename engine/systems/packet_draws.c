@@ -1,11 +1,12 @@
 // packet_draws.c: material palette, drawcalls, instance records.
 // Data in: drawables that passed culling, the material table, meshes. Data out: per alpha mode a
-// list of drawcalls, each a run of instances with the same mesh and material; the palette that
-// G-buffers index. Called by: packet_build (view, and again for the shadow map). Does not: cull, or
-// know how a draw is recorded.
+// list of drawcalls, each a run of instances with the same mesh, level of detail and material; the
+// palette that G-buffers index. Called by: packet_build (view, and again for the shadow map). Does
+// not: cull, or know how a draw is recorded.
 //
-// Order: alpha mode, material, mesh, entity; blended ones far to near. It comes from sorting 64-bit
-// keys, so it does not depend on the order of rows.
+// Order: alpha mode, band of distance, material, level of detail, mesh, entity; blended ones far to
+// near. It comes from sorting 64-bit keys, so it does not depend on the order of rows. The bands
+// are there because a pixel that something nearer covers already is not shaded again.
 #include "packet_parts.h"
 #include "../base/jobs.h"
 #include "../base/log.h"
@@ -117,7 +118,7 @@ MaterialPalette *packet_collect_materials(const World *world, Arena *scratch) {
 typedef struct SortItem {
     u64 key;
     u32 row;
-    u32 material; // palette index
+    u16 material, lod; // palette index; level of detail
 } SortItem;
 
 // Least significant digit first, eight bits at a time; digits that are the same in all keys are
@@ -144,30 +145,72 @@ static SortItem *radix_sort(SortItem *items, SortItem *spare, u32 count) {
     return items;
 }
 
-// Key: alpha mode (2 bits), then material (9), mesh (16), entity (32). Blended: alpha mode, then
-// distance (32, inverted; the bits of a non-negative f32 sort like it), entity index (20).
-_Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9, "key fields");
+// Key, from the lowest bit: entity index, mesh (16 bits), level of detail (2), material (9), band
+// of distance (4), alpha mode (2). Blended: entity index, distance (32, inverted; the bits of a
+// non-negative f32 sort like it), alpha mode.
+enum {
+    KEY_MESH = ENTITY_INDEX_BITS,
+    KEY_LOD = KEY_MESH + 16,
+    KEY_SURFACE = KEY_LOD + 2,
+    KEY_BAND = KEY_SURFACE + 9,
+    KEY_ALPHA = ENTITY_INDEX_BITS + 32,
+    BAND_MAX = 15
+};
+_Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9 && MESH_LODS_CAP <= 4 &&
+                   KEY_BAND + 4 <= KEY_ALPHA,
+               "key fields");
 
-static u64 make_key(const DrawableTable *d, u32 row, u32 material, const PacketMaterial *binding,
-                    const PacketView *view, bool for_shadow) {
-    u64 alpha = binding->alpha_mode, entity = d->table.entity[row];
-    if (alpha == ALPHA_BLEND) {
-        Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
-                   d->bounds_z[row] - view->position.z};
-        f32 distance2 = vec3_dot(to, to);
-        u32 bits;
-        memcpy(&bits, &distance2, sizeof bits);
-        return alpha << 57 | (u64)~bits << ENTITY_INDEX_BITS | ENTITY_INDEX(entity);
-    }
-    u64 surface = material;
-    // A depth pass sees of an opaque material only whether both sides count: longer runs.
-    if (for_shadow && alpha == ALPHA_OPAQUE) surface = binding->double_sided;
-    return alpha << 57 | surface << 48 | (u64)d->mesh[row] << 32 | entity;
+// ---- distance and level of detail ----
+
+// From the eye to the nearest point of a drawable's sphere, m; negative inside.
+static f32 sphere_distance(const DrawableTable *d, u32 row, const PacketView *view) {
+    Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
+               d->bounds_z[row] - view->position.z};
+    return vec3_length(to) - d->bounds_radius[row];
+}
+
+// The coarsest level whose error in the world is no larger. Errors never fall. Nothing forgiven is
+// full detail, also where a level without any error is there.
+static u32 choose_lod(const Mesh *mesh, f32 world_scale, f32 error_max_m) {
+    u32 lod = 0;
+    if (!(error_max_m > 0.0f)) return 0;
+    while (lod + 1 < mesh->lod_count && mesh->lods[lod + 1].error * world_scale <= error_max_m)
+        lod++;
+    return lod;
+}
+
+// Metres of error that a pixel of the view, or a texel of the shadow map, forgives.
+static f32 lod_error_m(f32 error_px, f32 distance, const PacketView *view,
+                       const ShadowFit *shadow) {
+    if (shadow) return error_px * shadow->texel_m;
+    return error_px * MAX(distance, view->near) * 2.0f * view->tan_y / view->height_px;
+}
+
+// Half octaves from 1 m: the exponent of the distance's square. At least half the radius: what
+// surrounds the camera is a background as a rule, and comes late.
+static u32 distance_band(f32 distance, f32 radius) {
+    distance = MAX(distance, 0.5f * radius);
+    f32 distance2 = distance * distance;
+    u32 bits;
+    memcpy(&bits, &distance2, sizeof bits);
+    u32 exponent = bits >> 23; // not negative: no sign
+    return CLAMP(exponent, 127, 127 + BAND_MAX) - 127;
+}
+
+// ---- keys and runs ----
+
+static u64 blend_key(const DrawableTable *d, u32 row, const PacketView *view) {
+    Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
+               d->bounds_z[row] - view->position.z};
+    f32 distance2 = vec3_dot(to, to);
+    u32 bits;
+    memcpy(&bits, &distance2, sizeof bits);
+    return (u64)ALPHA_BLEND << KEY_ALPHA | (u64)~bits << ENTITY_INDEX_BITS;
 }
 
 DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *view,
                                const MaterialPalette *palette, const u32 *rows, u32 row_count,
-                               bool for_shadow, Arena *scratch) {
+                               const ShadowFit *shadow, Arena *scratch) {
     const DrawableTable *d = WORLD_TABLE(desc->world, Drawable, drawable);
     const InstanceTable *instances = WORLD_TABLE(desc->world, Instance, instance);
     const MaterialTable *materials = WORLD_TABLE(desc->world, Material, material);
@@ -182,15 +225,33 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
         u32 place = material_row(materials, d->material[row], &memo);
         u32 material = place == ROW_NONE ? palette->missing : palette->index_of_row[place];
         const PacketMaterial *binding = &palette->bindings[material];
-        if (for_shadow) {
+        if (shadow) {
             u32 owner = table_row(&instances->table, d->owner[row]);
             if (owner == ROW_NONE || !instances->casts_shadow[owner] ||
                 binding->alpha_mode == ALPHA_BLEND)
                 continue;
         }
-        u64 key = make_key(d, row, material, binding, view, for_shadow);
-        items[lists.row_count++] = (SortItem){key, row, material};
-        lists.triangles += desc->assets->meshes[d->mesh[row]].index_count / 3;
+        const Mesh *mesh = &desc->assets->meshes[d->mesh[row]];
+        f32 distance = sphere_distance(d, row, view), radius = d->bounds_radius[row];
+        // The sphere's growth from mesh to world is the largest factor on any length.
+        f32 world_scale = mesh->radius > 0.0f ? radius / mesh->radius : 1.0f;
+        f32 error_m = lod_error_m(desc->settings.lod_error_px, distance, view, shadow);
+        u32 lod = choose_lod(mesh, world_scale, error_m);
+
+        u64 key = ENTITY_INDEX(d->table.entity[row]);
+        if (binding->alpha_mode == ALPHA_BLEND) {
+            key |= blend_key(d, row, view);
+        } else {
+            // A depth pass sees of an opaque material only whether both sides count, and shades
+            // nothing: longer runs.
+            bool depth_only = shadow && binding->alpha_mode == ALPHA_OPAQUE;
+            u64 surface = depth_only ? binding->double_sided : material;
+            u64 band = shadow ? 0 : distance_band(distance, radius);
+            key |= (u64)binding->alpha_mode << KEY_ALPHA | band << KEY_BAND |
+                   surface << KEY_SURFACE | (u64)lod << KEY_LOD | (u64)d->mesh[row] << KEY_MESH;
+        }
+        items[lists.row_count++] = (SortItem){key, row, (u16)material, (u16)lod};
+        lists.triangles += mesh->lods[lod].index_count / 3;
     }
     items = radix_sort(items, spare, lists.row_count);
 
@@ -202,12 +263,15 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
         const SortItem *item = &items[i];
         u32 mesh = d->mesh[item->row], alpha = palette->bindings[item->material].alpha_mode;
         lists.rows[i] = item->row;
-        lists.material[i] = (u16)item->material;
-        u64 this_run = alpha == ALPHA_BLEND
-                           ? (u64)alpha << 57 | (u64)item->material << 48 | (u64)mesh << 32
-                           : item->key & ~(u64)UINT32_MAX;
+        lists.material[i] = item->material;
+        u64 this_run = item->key >> KEY_MESH;
+        if (alpha == ALPHA_BLEND)
+            this_run = ((u64)alpha << KEY_ALPHA | (u64)item->material << KEY_SURFACE |
+                        (u64)item->lod << KEY_LOD | (u64)mesh << KEY_MESH) >>
+                       KEY_MESH;
         if (this_run != run) {
-            *++draw = (PacketDraw){mesh, item->material, i, 0};
+            *++draw = (PacketDraw){
+                .mesh = mesh, .material = item->material, .first_instance = i, .lod = item->lod};
             if (!lists.lists[alpha]) lists.lists[alpha] = draw; // lists follow each other
             lists.counts[alpha]++;
             run = this_run;

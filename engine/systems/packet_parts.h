@@ -13,6 +13,7 @@
 typedef struct PacketView {
     Vec3 position, right, up, forward; // world; orthonormal
     f32 tan_x, tan_y, near;            // tangents of the half angles of view
+    f32 height_px;
     Mat4 view, view_projection;
     Frustum frustum;
 } PacketView;
@@ -70,10 +71,10 @@ typedef struct DrawLists {
     u32 counts[3];
     u32 triangles;
 } DrawLists;
-// rows: drawables that pass culling. For shadows, opaque draws are told apart only by what a depth
-// pass sees, and blended ones are left out.
+// rows: drawables that pass culling. With `shadow` they are casters of its map: opaque draws are
+// told apart only by what a depth pass sees, and blended ones are left out.
 DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *view,
                                const MaterialPalette *palette, const u32 *rows, u32 row_count,
-                               bool for_shadow, Arena *scratch);
+                               const ShadowFit *shadow, Arena *scratch);
 void packet_write_instances(const World *world, const DrawLists *draws, InstanceRecord *out);
 #endif

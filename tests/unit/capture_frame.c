@@ -19,12 +19,15 @@ static void assert_draws_equal(const Packet *a, const AssetStore *a_store, const
         const Mesh *mesh_a = &a_store->meshes[draws_a[i].mesh];
         const Mesh *mesh_b = &b_store->meshes[draws_b[i].mesh];
         assert_int_equal(draws_a[i].material, draws_b[i].material);
+        assert_int_equal(draws_a[i].lod, draws_b[i].lod);
+        assert_int_equal(mesh_a->lod_count, mesh_b->lod_count);
+        assert_memory_equal(mesh_a->lods, mesh_b->lods, sizeof mesh_a->lods);
         assert_int_equal(draws_a[i].first_instance, draws_b[i].first_instance);
         assert_int_equal(mesh_a->vertex_count, mesh_b->vertex_count);
         assert_int_equal(mesh_a->index_count, mesh_b->index_count);
         assert_memory_equal(mesh_a->vertices, mesh_b->vertices,
                             mesh_a->vertex_count * sizeof(MeshVertex));
-        assert_memory_equal(mesh_a->indices, mesh_b->indices, mesh_a->index_count * sizeof(u32));
+        assert_memory_equal(mesh_a->indices, mesh_b->indices, mesh_a->total_index_count * sizeof(u32));
         assert_true(mesh_a->radius == mesh_b->radius);
         assert_int_equal(mesh_a->has_color, mesh_b->has_color);
     }

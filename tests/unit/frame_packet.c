@@ -43,6 +43,7 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
         for (u32 i = 0; i < draws[list].count; i++) {
             const PacketDraw *d = (const PacketDraw *)(block + draws[list].offset) + i;
             NEED(d->mesh < mesh_count && d->material < p->materials.count);
+            NEED(d->lod < MESH_LODS_CAP);
             NEED((u64)d->first_instance + d->instance_count <= p->instances.count);
             drawn += d->instance_count;
         }
@@ -202,6 +203,7 @@ TEST(frame_packet, each_index_is_checked) {
         PacketDraw *d = PACKET_WRITE(p, section, PacketDraw) + p->section.count - 1;               \
         TOO_LARGE(d->mesh, FIXTURE_MESH_COUNT);                                                    \
         TOO_LARGE(d->material, p->materials.count);                                                \
+        TOO_LARGE(d->lod, MESH_LODS_CAP);                                                          \
         TOO_LARGE(d->first_instance, p->instances.count);                                          \
         TOO_LARGE(d->instance_count, p->instances.count + 1 - d->first_instance);                  \
     } while (0)

@@ -19,6 +19,9 @@ static Mesh make_mesh(const f32 corners[8][3]) {
                   .indices = indices,
                   .vertex_count = 8,
                   .index_count = 36,
+                  .total_index_count = 36,
+                  .lod_count = 4,
+                  .lods = {{0, 36, 0}, {0, 24, 0}, {0, 12, 0.05f}, {24, 6, 0.2f}},
                   .min = {-0.5f, -0.5f, -0.5f},
                   .max = {0.5f, 0.5f, 0.5f},
                   .radius = 0.8660255f};
@@ -36,7 +39,7 @@ SystemsFixture *systems_fixture_create(u64 seed) {
         if ((i & 2) && (i & 4)) ramp[i][1] = -0.5f;
     f->meshes[MESH_CUBE] = make_mesh(cube);
     f->meshes[MESH_RAMP] = make_mesh(ramp);
-    f->meshes[MESH_BALL] = (Mesh){.index_count = 0, .center = {0.25f, 0, 0}, .radius = 0.5f};
+    f->meshes[MESH_BALL] = (Mesh){.lod_count = 1, .center = {0.25f, 0, 0}, .radius = 0.5f};
     f->models[1] = (Model){.name = "cube", .min = {-0.5f, -0.5f, -0.5f}, .max = {0.5f, 0.5f, 0.5f}};
     f->assets = (AssetStore){.meshes = f->meshes,
                              .models = f->models,

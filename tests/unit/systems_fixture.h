@@ -1,5 +1,6 @@
 // systems_fixture.h: a world with the engine's systems and a hand-made asset store (no files).
-// Mesh 1 is a cube of side 1, mesh 2 a ramp, mesh 3 only a sphere (no triangles); model 1 is the
+// Mesh 1 is a cube of side 1, mesh 2 a ramp (both with made-up levels of detail), mesh 3 only a
+// sphere (no triangles); model 1 is the
 // cube's box. Textures 0..2 exist by number alone.
 #ifndef LUZ_TEST_SYSTEMS_FIXTURE_H
 #define LUZ_TEST_SYSTEMS_FIXTURE_H

@@ -29,6 +29,18 @@ TEST(systems_packet, threads_do_not_matter) {
     assert_true(one == packet_hash(2) && one == packet_hash(8));
 }
 
+// Half octaves of the distance, 1 m to 181 m and beyond. (The camera is at the origin.)
+static u32 band_of(const DrawableTable *d, u32 row) {
+    f64 r = d->bounds_radius[row];
+    f64 to =
+        sqrt((f64)d->bounds_x[row] * d->bounds_x[row] + (f64)d->bounds_y[row] * d->bounds_y[row] +
+             (f64)d->bounds_z[row] * d->bounds_z[row]);
+    f64 distance = to - r > 0.5 * r ? to - r : 0.5 * r;
+    for (u32 band = 0; band < 15; band++)
+        if (distance < pow(2, 0.5 * (band + 1)) * (1 - 1e-6)) return band;
+    return 15;
+}
+
 TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
     SystemsFixture *f = systems_fixture_create(5);
     fixture_fill(f, 0xD1, 800);
@@ -40,6 +52,7 @@ TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
     u32 next = 0, emissive = 0;
     f32 last_distance = INFINITY;
     for (u32 list = 0; list < 3; list++) {
+        u64 last_order = 0;
         const PacketDraw *draws = (const PacketDraw *)((const u8 *)p + lists[list].offset);
         assert_true(lists[list].count > 0);
         for (u32 i = 0; i < lists[list].count; i++) {
@@ -47,17 +60,18 @@ TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
             assert_int_equal(d->first_instance, next);
             next += d->instance_count;
             assert_int_equal(bindings[d->material].alpha_mode, list);
-            if (list < ALPHA_BLEND && i > 0)
-                assert_true(d->material > draws[i - 1].material ||
-                            (d->material == draws[i - 1].material && d->mesh > draws[i - 1].mesh));
             for (u32 k = 0; k < d->instance_count; k++) {
                 const InstanceRecord *r = &instances[d->first_instance + k];
                 assert_int_equal(r->ids[0], d->material);
                 u32 row = FIXTURE_ROW(f, drawable, r->ids[1]);
                 const DrawableTable *t = FIXTURE_TABLE(f, Drawable, drawable);
                 assert_int_equal(t->mesh[row], d->mesh);
-                if (list < ALPHA_BLEND && k > 0) assert_true(r->ids[1] > r[-1].ids[1]);
-                if (list == ALPHA_BLEND) {
+                if (list < ALPHA_BLEND) {
+                    u64 order = (u64)band_of(t, row) << 60 | (u64)d->material << 40 |
+                                (u64)d->lod << 36 | (u64)d->mesh << 20 | ENTITY_INDEX(r->ids[1]);
+                    assert_true(order > last_order);
+                    last_order = order;
+                } else {
                     f32 distance =
                         vec3_length(vec3(t->bounds_x[row], t->bounds_y[row], t->bounds_z[row]));
                     assert_true(distance <= last_distance * 1.00001f);
@@ -79,6 +93,83 @@ TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
     for (u32 i = 0; i < d->table.count; i++) hidden += d->bounds_radius[i] < 0;
     p = fixture_packet(f, ENTITY_NONE, all, 640, 360, 0);
     assert_int_equal(p->counts.drawables_visible, d->table.count - hidden);
+    systems_fixture_destroy(f);
+}
+
+// The coarsest level whose error, seen from the nearest point of the bounding sphere, is small
+// enough; from the matrices alone, level by level.
+static u32 naive_lod(const Mesh *mesh, const InstanceRecord *r, const Packet *p, f64 error_px,
+                     f64 *slack) {
+    f64 center[3], to = 0, scale = 0;
+    for (u32 a = 0; a < 3; a++) {
+        center[a] = r->world[a][0] * mesh->center.x + r->world[a][1] * mesh->center.y +
+                    r->world[a][2] * mesh->center.z + r->world[a][3];
+        to += (center[a] - p->frame.camera[a]) * (center[a] - p->frame.camera[a]);
+        f64 column = 0;
+        for (u32 b = 0; b < 3; b++) column += (f64)r->world[b][a] * r->world[b][a];
+        scale = MAX(scale, sqrt(column));
+    }
+    f64 distance = MAX(sqrt(to) - mesh->radius * scale, p->frame.camera[3]);
+    f64 half_height = sqrt((f64)p->frame.ray_up[0] * p->frame.ray_up[0] +
+                           (f64)p->frame.ray_up[1] * p->frame.ray_up[1] +
+                           (f64)p->frame.ray_up[2] * p->frame.ray_up[2]);
+    u32 best = 0;
+    *slack = 1;
+    for (u32 lod = 0; lod < mesh->lod_count && error_px > 0; lod++) {
+        f64 px = mesh->lods[lod].error * scale / distance * p->height_px / (2 * half_height);
+        if (px <= error_px) best = lod;
+        *slack = MIN(*slack, fabs(px / error_px - 1));
+    }
+    return best;
+}
+
+TEST(systems_packet, level_of_detail_follows_the_error_on_the_screen) {
+    const u64 seed = 0x10D;
+    printf("seed %llx\n", (unsigned long long)seed);
+    SystemsFixture *f = systems_fixture_create(5);
+    fixture_fill(f, seed, 300);
+    Entity camera = fixture_spawn(f, vec3(0, 0, 0));
+    FIXTURE_ADD(f, camera, camera);
+    TransformTable *t = FIXTURE_TABLE(f, Transform, transform);
+    u32 eye = FIXTURE_ROW(f, transform, camera), seen[MESH_LODS_CAP] = {0};
+    for (u32 round = 0; round < 60; round++) {
+        t->x[eye] = random_range(seed, 1, round, -30, 30);
+        t->z[eye] = random_range(seed, 2, round, -50, 20);
+        t->yaw[eye] = random_range(seed, 3, round, -180, 180);
+        FIXTURE_TABLE(f, Camera, camera)->fov[0] = random_range(seed, 4, round, 30, 110);
+        table_touch(&t->table, eye);
+        systems_settle(&f->systems, &f->context);
+        arena_reset(&f->arenas.frame);
+        RenderSettings settings = settings_default();
+        settings.lod_error_px = round % 4 == 0 ? 0.0f : random_range(seed, 5, round, 0.1f, 16);
+        const Packet *p = fixture_packet(f, camera, settings, 640, 360, 0);
+        const PacketSection lists[] = {p->opaque_draws, p->mask_draws, p->blend_draws,
+                                       p->shadow_draws, p->shadow_mask_draws};
+        u32 triangles = 0;
+        f64 texel = p->shadow_size_px ? p->frame.shadow[1] / 1.5 : 0;
+        for (u32 list = 0; list < COUNT_OF(lists); list++) {
+            const PacketDraw *draws = (const PacketDraw *)((const u8 *)p + lists[list].offset);
+            for (u32 i = 0; i < lists[list].count; i++) {
+                const PacketDraw *d = &draws[i];
+                const Mesh *mesh = &f->meshes[d->mesh];
+                if (settings.lod_error_px == 0) assert_int_equal(d->lod, 0);
+                if (list < 3) triangles += mesh->lods[d->lod].index_count / 3 * d->instance_count;
+                for (u32 k = 0; k < d->instance_count; k++) {
+                    const InstanceRecord *r =
+                        PACKET_DATA(p, instances, InstanceRecord) + d->first_instance + k;
+                    f64 slack;
+                    u32 want = naive_lod(mesh, r, p, settings.lod_error_px, &slack);
+                    if (list < 3 && slack > 1e-4) assert_int_equal(d->lod, want);
+                    seen[d->lod] += list < 3;
+                    // Scales are 1 to 3 along y. In the shadow map distance plays no part.
+                    f64 allowed = texel * settings.lod_error_px;
+                    if (list >= 3) assert_true(mesh->lods[d->lod].error <= allowed * 1.001);
+                }
+            }
+        }
+        assert_int_equal(triangles, p->counts.triangles);
+    }
+    for (u32 lod = 0; lod < MESH_LODS_CAP; lod++) assert_true(seen[lod] > 20);
     systems_fixture_destroy(f);
 }
 
