@@ -14,8 +14,8 @@
 // 1. A component of your own is a list of columns; from it come the table, the level's keys with
 //    their checks, saving, hashing and the schema (world/table.h):
 //
-//        #define SPIN_COLUMNS(C) C(F32, speed, "deg/s", 90, "speed", -720, 720, "how fast it turns")
-//        TABLE_STRUCT(Spin, SPIN_COLUMNS)                     // struct SpinTable { ... f32 *speed; }
+//        #define SPIN_COLUMNS(C) C(F32, speed, "deg/s", 90, "speed", -720, 720, "how fast it is")
+//        TABLE_STRUCT(Spin, SPIN_COLUMNS)                  // struct SpinTable { ... f32 *speed; }
 //        COMPONENT_DEFINE(Spin, spin, SPIN_COLUMNS, false, "turns about y")
 //
 //    In a level:  [[entity]]  instance = { model = "gate" }  spin = { speed = 45 }
@@ -74,6 +74,7 @@
 //   device         discrete, integrated, then     out_directory  "out"
 //                  software                       seconds        never ends by itself
 //   validation     off                            hud, key, on_load, user   none
+//   fixed_resolution  off: on a software driver a window's resolution follows the frame time
 //
 // The player is the entity called "spawn", else a new one at the camera "main", else one that sees
 // everything from afar. It walks by Input (world/input.h).
@@ -137,8 +138,8 @@ void luz_say(Luz *luz, const char *format, ...) PRINTF_LIKE(2, 3);
 // Looks through a camera by name; NULL = the player's eyes.
 void luz_set_camera(Luz *luz, const char *name);
 
-// For `fill`: an entity with a transform and an instance of a generated shape in one colour, or of a
-// model file (path from the working directory). ENTITY_NONE with messages at a limit.
+// For `fill`: an entity with a transform and an instance of a generated shape in one colour, or of
+// a model file (path from the working directory). ENTITY_NONE with messages at a limit.
 Entity luz_add_shape(World *world, AssetStore *assets, const char *name, const ShapeDesc *shape,
                      Vec3 position, Vec3 scale, Vec3 color);
 Entity luz_add_model(World *world, AssetStore *assets, const char *name, const char *path,

@@ -27,22 +27,22 @@ u32 hud_lines(const LuzHud *hud, PacketText2D *out, u32 cap, void *user) {
     u32 count = 0;
     f32 seconds = (f32)hud->seconds, height = (f32)hud->height_px;
     if (seconds < TITLE_UNTIL + FADE)
-        out[count++] = (PacketText2D){MARGIN_PX, height * 0.16f, TITLE_SIZE_PX,
-                                      faded(WARM_WHITE, seconds, TITLE_UNTIL),
-                                      hud->session->level.title};
+        out[count++] =
+            (PacketText2D){MARGIN_PX, height * 0.16f, TITLE_SIZE_PX,
+                           faded(WARM_WHITE, seconds, TITLE_UNTIL), hud->session->level.title};
     if (seconds < HINTS_UNTIL + FADE) {
         u32 color = faded(WARM_WHITE, seconds, HINTS_UNTIL);
         f32 y = height * 0.16f + TITLE_SIZE_PX + LINE_PX;
         out[count++] = (PacketText2D){MARGIN_PX, y, TEXT_SIZE_PX, color,
                                       "W A S D and the mouse to walk, shift to run"};
-        out[count++] = (PacketText2D){MARGIN_PX, y + LINE_PX, TEXT_SIZE_PX, color,
-                                      "1 2 3 to light in another way, T for a tour, H for all keys"};
+        out[count++] =
+            (PacketText2D){MARGIN_PX, y + LINE_PX, TEXT_SIZE_PX, color,
+                           "1 2 3 to light in another way, T for a tour, H for all keys"};
     }
     char path[32];
     settings_word("path", hud->settings->path, path, sizeof path);
-    const char *line =
-        arena_format(hud->arena, "%.0f fps  %s  %u of %u lights", (f64)hud->fps, path,
-                     hud->counts->lights_shaded, hud->counts->lights_total);
+    const char *line = arena_format(hud->arena, "%.0f fps  %s  %u of %u lights", (f64)hud->fps,
+                                    path, hud->counts->lights_shaded, hud->counts->lights_total);
     out[count++] = (PacketText2D){MARGIN_PX, height - MARGIN_PX - TEXT_SIZE_PX, TEXT_SIZE_PX,
                                   WARM_WHITE | 0xB0u << 24, line};
     return count;

@@ -1,7 +1,7 @@
 // main.c: the demo: a walk through a level full of moving lights.
 //
-// The game is three components of its own (doors, shy fireflies, a touring camera) with their systems
-// (project.c), a HUD and a key. The engine does the rest: ../engine/luz.h is its manual.
+// The game is three components of its own (doors, shy fireflies, a touring camera) with their
+// systems (project.c), a HUD and a key. The engine does the rest: ../engine/luz.h is its manual.
 #include "../engine/luz.h"
 #include "hud.h"
 #include "tour.h"
@@ -23,8 +23,10 @@ static bool take_flag(int *argc, char **argv, const char *flag) {
     bool found = false;
     int kept = 0;
     for (int i = 0; i < *argc; i++) {
-        if (strcmp(argv[i], flag) == 0) found = true;
-        else argv[kept++] = argv[i];
+        if (strcmp(argv[i], flag) == 0)
+            found = true;
+        else
+            argv[kept++] = argv[i];
     }
     *argc = kept;
     return found;

@@ -1,8 +1,8 @@
 // project.c: what the demo adds to the engine's world: components and systems.
 //
-// Data in: none. Data out: luz_project, which the demo runs with, and which the toolbox finds when it
-// is linked with it, so that `luz check`, `shot` and `replay` know the demo's levels. Does not: hold
-// a HUD or keys; those are main.c's.
+// Data in: none. Data out: luz_project, which the demo runs with, and which the toolbox finds when
+// it is linked with it, so that `luz check`, `shot` and `replay` know the demo's levels. Does not:
+// hold a HUD or keys; those are main.c's.
 #include "../engine/luz.h"
 #include "door.h"
 #include "shy.h"

@@ -1,8 +1,8 @@
 // shy.c: fireflies keep their distance.
 //
 // Data in: shy, the first walker's place, transform. Data out: shy.flee_*, transform.x and z.
-// Called by: the system table. It moves the resting place, not the offset, so an orbit goes on around
-// it. Does not: look at heights (fireflies flee sideways), or at parents that are turned.
+// Called by: the system table. It moves the resting place, not the offset, so an orbit goes on
+// around it. Does not: look at heights (fireflies flee sideways), or at parents that are turned.
 #include "shy.h"
 
 COMPONENT_DEFINE(Shy, shy, SHY_COLUMNS, false, "drifts aside when a walker comes near")

@@ -1,9 +1,9 @@
 // tour.c: a camera flies from one camera of the level to the next, in name order, round and round.
 //
-// Data in: the level's cameras (names, world places, fields of view), the world's tick. Data out: the
-// touring camera's transform and fov. Called by: the system table; on_load. A function of the tick
-// alone: no state, so it can be cut, rewound and replayed. Does not: look out for walls; who places
-// cameras such that the straight way is open gets a fine tour.
+// Data in: the level's cameras (names, world places, fields of view), the world's tick. Data out:
+// the touring camera's transform and fov. Called by: the system table; on_load. A function of the
+// tick alone: no state, so it can be cut, rewound and replayed. Does not: look out for walls; who
+// places cameras such that the straight way is open gets a fine tour.
 #include "tour.h"
 #include <string.h>
 
@@ -29,7 +29,8 @@ static u32 gather_stops(const World *world, Stop *stops) {
         const char *name = world_name(world, entity);
         u32 row = table_row(&places->table, entity);
         if (!name[0] || row == ROW_NONE) continue;
-        if (table_row(tours, entity) != ROW_NONE || table_row(walkers, entity) != ROW_NONE) continue;
+        if (table_row(tours, entity) != ROW_NONE || table_row(walkers, entity) != ROW_NONE)
+            continue;
         Mat34 place;
         columns_get_mat34(&places->w00, row, place.m);
         Stop stop = {name, mat34_translation(&place), mat34_rotation_deg(&place), cameras->fov[i]};
@@ -59,9 +60,9 @@ static Stop between(const Stop *stops, u32 count, u32 index, f32 t) {
     const Stop *a = &stops[(index + count - 1) % count], *b = &stops[index];
     const Stop *c = &stops[(index + 1) % count], *d = &stops[(index + 2) % count];
     Vec3 pa = a->position, pb = b->position, pc = c->position, pd = d->position;
-    return (Stop){.position = vec3(spline(pa.x, pb.x, pc.x, pd.x, t),
-                                   spline(pa.y, pb.y, pc.y, pd.y, t),
-                                   spline(pa.z, pb.z, pc.z, pd.z, t)),
+    return (Stop){.position =
+                      vec3(spline(pa.x, pb.x, pc.x, pd.x, t), spline(pa.y, pb.y, pc.y, pd.y, t),
+                           spline(pa.z, pb.z, pc.z, pd.z, t)),
                   .rotation_deg = vec3(lerp_deg(b->rotation_deg.x, c->rotation_deg.x, t),
                                        lerp_deg(b->rotation_deg.y, c->rotation_deg.y, t),
                                        lerp_deg(b->rotation_deg.z, c->rotation_deg.z, t)),

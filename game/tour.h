@@ -8,8 +8,8 @@
 
 #define TOUR_CAMERA "tour"
 
-#define TOUR_COLUMNS(C)                                                             \
-    C(F32, leg, "s", 5, "leg", 0.1, 1000, "time from one camera to the next")        \
+#define TOUR_COLUMNS(C)                                                                            \
+    C(F32, leg, "s", 5, "leg", 0.1, 1000, "time from one camera to the next")                      \
     C(F32, stay, "s", 2, "stay", 0, 1000, "time at each camera")
 
 TABLE_STRUCT(Tour, TOUR_COLUMNS)

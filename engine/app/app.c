@@ -51,9 +51,12 @@ bool app_create(App *app, const AppDesc *desc) {
                            .on_load = desc->on_load};
     bool ok = session_create(&app->session, &session) &&
               arena_create(&app->replay_arena, "replay", REPLAY_ARENA_CAP);
-    if (ok && desc->replay_path) ok = app_replay_open(app, desc->replay_path);
-    else if (ok && desc->level) ok = app_load(app, desc->level);
-    else if (ok && desc->fill) ok = session_fill(&app->session, desc->fill, desc->user);
+    if (ok && desc->replay_path)
+        ok = app_replay_open(app, desc->replay_path);
+    else if (ok && desc->level)
+        ok = app_load(app, desc->level);
+    else if (ok && desc->fill)
+        ok = session_fill(&app->session, desc->fill, desc->user);
     if (ok && desc->camera) app_set_camera(app, desc->camera);
     if (ok && desc->record_path) app_record_start(app, desc->record_path);
     if (!ok) app_destroy(app);
@@ -180,8 +183,8 @@ void app_poll_files(App *app, f64 now_ms) {
 
 void app_check_replay(App *app) {
     RecordingDifference difference;
-    bool same = recording_check_tick(app->replay_check, app->replay_tick, app->session.world,
-                                     &difference);
+    bool same =
+        recording_check_tick(app->replay_check, app->replay_tick, app->session.world, &difference);
     // The first difference tells; those that follow come from it.
     if (!same && app->replay_differences++ == 0) app_say(app, "%s", difference.text);
 }

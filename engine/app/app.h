@@ -23,42 +23,42 @@ typedef struct AppHud {
     const RenderSettings *settings;
     const PacketCounts *counts; // of the last frame
     f32 fps, frame_ms;
-    f64 seconds;                // since the level was loaded, in simulated time
+    f64 seconds; // since the level was loaded, in simulated time
     u32 width_px, height_px;
     bool paused;
-    Arena *arena;               // for the texts: lives for this frame
+    Arena *arena; // for the texts: lives for this frame
 } AppHud;
 
 // In every field zero means default. Texts must outlive the App.
 typedef struct AppDesc {
-    const char *title;                      // NULL = "luz"
-    const char *help;                       // more lines for --help; NULL = none
-    const char *level;                      // NULL = `fill` makes the world
+    const char *title; // NULL = "luz"
+    const char *help;  // more lines for --help; NULL = none
+    const char *level; // NULL = `fill` makes the world
     // Fills an empty world from code, when there is no level; the session gives a player a place
     // afterwards, as for a level. Called again by a reload.
     bool (*fill)(World *world, AssetStore *assets, void *user);
     const ComponentDesc *const *components; // the program's own
     u32 component_count;
-    const SystemPlacement *systems;         // the program's own; before NULL = before "walk"
+    const SystemPlacement *systems; // the program's own; before NULL = before "walk"
     u32 system_count;
-    const RenderSettings *settings;         // NULL = settings_default()
-    u32 width_px, height_px;                // 0 = 1280 x 720
-    u32 threads;                            // 0 = all cores
-    const char *device;                     // part of a device's name; NULL = the best one
-    const char *camera;                     // to look through at first; NULL = the player's eyes
-    const char *out_directory;              // pictures and recordings; NULL = "out"
-    f32 seconds;                            // quits after so many; 0 = never
+    const RenderSettings *settings; // NULL = settings_default()
+    u32 width_px, height_px;        // 0 = 1280 x 720
+    u32 threads;                    // 0 = all cores
+    const char *device;             // part of a device's name; NULL = the best one
+    const char *camera;             // to look through at first; NULL = the player's eyes
+    const char *out_directory;      // pictures and recordings; NULL = "out"
+    f32 seconds;                    // quits after so many; 0 = never
     bool validation;
     bool fullscreen;
-    bool headless;                          // no window even if there is a display
-    bool panel;                             // the debug panel is open at the start
-    bool fixed_step;                        // exactly one tick a frame, whatever the clock says
+    bool headless;   // no window even if there is a display
+    bool panel;      // the debug panel is open at the start
+    bool fixed_step; // exactly one tick a frame, whatever the clock says
     // Windows: scale and target_ms stay as they are in the settings. Else a software driver gets a
     // resolution that follows the frame time, because few machines draw a whole window in time.
     bool fixed_resolution;
-    const char *record_path;                // records from the first tick on, until the end
-    const char *replay_path;                // plays a recording and checks every tick
-    const char *status_path;                // a line of JSON a second, for tests and curious people
+    const char *record_path; // records from the first tick on, until the end
+    const char *replay_path; // plays a recording and checks every tick
+    const char *status_path; // a line of JSON a second, for tests and curious people
     // Fills out[0 .. cap) with lines of text in window pixels; returns how many.
     u32 (*hud)(const AppHud *hud, PacketText2D *out, u32 cap, void *user);
     // A key went down that does not walk (controls.c): upper-case ASCII for printable ones, else
@@ -83,19 +83,22 @@ typedef struct AppDesc {
 #define APP_SCALE_STEP      0.0625f
 #define APP_SIDE_MIN_PX     16
 
-typedef struct AppMessage { char text[256]; f64 until_ms; } AppMessage;
+typedef struct AppMessage {
+    char text[256];
+    f64 until_ms;
+} AppMessage;
 
 struct App {
     AppDesc desc;
     Session session;
     RenderSettings settings;
-    Gpu *gpu;              // NULL until app_open_device
+    Gpu *gpu; // NULL until app_open_device
     Renderer *renderer;
-    u64 assets_in_use;     // AssetStore.stamp that the renderer holds
-    u64 assets_warm;       // AssetStore.stamp whose pipelines were all made
+    u64 assets_in_use; // AssetStore.stamp that the renderer holds
+    u64 assets_warm;   // AssetStore.stamp whose pipelines were all made
 
     // What is looked through, and what is shown over the picture.
-    char camera[128];      // "" = the player's eyes
+    char camera[128]; // "" = the player's eyes
     bool paused, help, panel;
     AppMessage messages[APP_MESSAGES_CAP];
     char level_error[4096]; // diagnostics of the newest load, while it is broken
@@ -122,8 +125,8 @@ struct App {
     f32 fps;
     f32 frame_ms[APP_FRAMES_SHOWN]; // a ring
     u32 frame_index;
-    f32 ticks_ms, packet_ms;        // CPU, last frame
-    PacketCounts counts;            // of the last packet
+    f32 ticks_ms, packet_ms; // CPU, last frame
+    PacketCounts counts;     // of the last packet
     u32 internal_width_px, internal_height_px;
 };
 
@@ -156,9 +159,9 @@ bool app_restart(App *app);
 // The frame packet of what is looked at, for a picture of width x height pixels at settings.scale.
 // NULL if there is no world. Valid until the next call.
 const Packet *app_packet(App *app, u32 width_px, u32 height_px);
-// HUD, messages, errors and help, in window pixels: after app_packet, valid as long as the packet. They
-// are not in the packet, so that small internal resolutions do not blur them. The first *boxed of them
-// (errors, help) want a dark ground. Returns how many.
+// HUD, messages, errors and help, in window pixels: after app_packet, valid as long as the packet.
+// They are not in the packet, so that small internal resolutions do not blur them. The first *boxed
+// of them (errors, help) want a dark ground. Returns how many.
 u32 app_texts(App *app, u32 width_px, u32 height_px, const PacketText2D **out, u32 *boxed);
 // One picture of what the camera sees, without a window; out's pixels lie in the session's frame
 // arena, beside the packet. camera NULL = the player's eyes.
@@ -178,7 +181,7 @@ void app_set_camera(App *app, const char *name);
 
 void app_record_start(App *app, const char *path); // NULL = the next free out/recording_NNN.luzr
 void app_record_stop(App *app);
-bool app_replay_open(App *app, const char *path);  // loads the level that it names
+bool app_replay_open(App *app, const char *path); // loads the level that it names
 void app_write_screenshot(App *app, const Packet *packet);
 void app_write_frame_file(App *app, const Packet *packet);
 // One line of JSON, replacing the file. `text` is what is wrong at the moment ("" = nothing).

@@ -56,7 +56,8 @@ void app_record_start(App *app, const char *path) {
         app_say(app, "a replay is running; it is a recording already");
         return;
     }
-    if (path) snprintf(app->record_path, sizeof app->record_path, "%s", path);
+    if (path)
+        snprintf(app->record_path, sizeof app->record_path, "%s", path);
     else if (!app_next_path(app, "recording", "luzr", app->record_path, sizeof app->record_path))
         return;
     // A recording begins where a replay can begin: at the first tick of the level.
@@ -76,8 +77,10 @@ void app_record_start(App *app, const char *path) {
     if (app->gpu)
         snprintf(info.device, sizeof info.device, "%.127s", gpu_info(app->gpu)->device_name);
     app->writer = recording_writer_create(&info, app->session.world);
-    if (!app->writer) app_say(app, "no recording: out of memory");
-    else LOG(NOTE, "recording from the level's start");
+    if (!app->writer)
+        app_say(app, "no recording: out of memory");
+    else
+        LOG(NOTE, "recording from the level's start");
 }
 
 void app_record_stop(App *app) {
@@ -109,10 +112,14 @@ static void json_escape(char *out, u64 out_cap, const char *text) {
     u64 used = 0;
     for (; *text && used + 7 < out_cap; text++) {
         u8 c = (u8)*text;
-        if (c == '"' || c == '\\') out[used++] = '\\', out[used++] = (char)c;
-        else if (c == '\n') out[used++] = '\\', out[used++] = 'n';
-        else if (c < 0x20) used += (u64)snprintf(out + used, 7, "\\u%04x", c);
-        else out[used++] = (char)c;
+        if (c == '"' || c == '\\')
+            out[used++] = '\\', out[used++] = (char)c;
+        else if (c == '\n')
+            out[used++] = '\\', out[used++] = 'n';
+        else if (c < 0x20)
+            used += (u64)snprintf(out + used, 7, "\\u%04x", c);
+        else
+            out[used++] = (char)c;
     }
     out[used] = 0;
 }
@@ -130,19 +137,19 @@ void app_write_status(App *app, u32 width_px, u32 height_px) {
     char word[32], error[1024], level[1024], line[4096];
     json_escape(level, sizeof level, app->session.level_path);
     json_escape(error, sizeof error, app->level_error[0] ? app->level_error : app->shader_error);
-    int size = snprintf(
-        line, sizeof line,
-        "{\"tick\": %u, \"position\": [%.3f, %.3f, %.3f], \"yaw\": %.2f, \"pitch\": %.2f, "
-        "\"path\": \"%s\", \"fps\": %.1f, \"size\": [%u, %u], \"internal\": [%u, %u], "
-        "\"level\": \"%s\", \"level_hash\": \"%016llx\", \"lights\": %u, \"panel\": %s, "
-        "\"paused\": %s, \"recording\": %s, \"validation\": %u, \"errors\": \"%s\"}\n",
-        world->tick, place[0], place[1], place[2], place[3], place[4],
-        settings_word("path", app->settings.path, word, sizeof word), app->fps, width_px,
-        height_px, app->internal_width_px, app->internal_height_px, level,
-        (unsigned long long)app->session.level.content_hash, app->counts.lights_total,
-        app->panel ? "true" : "false", app->paused ? "true" : "false",
-        app->writer ? "true" : "false",
-        app->gpu ? gpu_validation_message_count(app->gpu) : 0, error);
+    int size =
+        snprintf(line, sizeof line,
+                 "{\"tick\": %u, \"position\": [%.3f, %.3f, %.3f], \"yaw\": %.2f, \"pitch\": %.2f, "
+                 "\"path\": \"%s\", \"fps\": %.1f, \"size\": [%u, %u], \"internal\": [%u, %u], "
+                 "\"level\": \"%s\", \"level_hash\": \"%016llx\", \"lights\": %u, \"panel\": %s, "
+                 "\"paused\": %s, \"recording\": %s, \"validation\": %u, \"errors\": \"%s\"}\n",
+                 world->tick, place[0], place[1], place[2], place[3], place[4],
+                 settings_word("path", app->settings.path, word, sizeof word), app->fps, width_px,
+                 height_px, app->internal_width_px, app->internal_height_px, level,
+                 (unsigned long long)app->session.level.content_hash, app->counts.lights_total,
+                 app->panel ? "true" : "false", app->paused ? "true" : "false",
+                 app->writer ? "true" : "false",
+                 app->gpu ? gpu_validation_message_count(app->gpu) : 0, error);
     if (!file_write(app->desc.status_path, line, (u64)size)) {
         app_say(app, "cannot write %s", app->desc.status_path);
         app->desc.status_path = NULL; // once is enough

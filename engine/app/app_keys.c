@@ -7,8 +7,18 @@
 #include <string.h>
 
 // GLFW's numbers of the keys that have no character; equal for all of GLFW 3.
-enum { KEY_F1 = 290, KEY_F2, KEY_F3, KEY_F4, KEY_F5, KEY_F6, KEY_F12 = 301, KEY_TAB = 258,
-       KEY_KP_SUBTRACT = 333, KEY_KP_ADD = 334 };
+enum {
+    KEY_F1 = 290,
+    KEY_F2,
+    KEY_F3,
+    KEY_F4,
+    KEY_F5,
+    KEY_F6,
+    KEY_F12 = 301,
+    KEY_TAB = 258,
+    KEY_KP_SUBTRACT = 333,
+    KEY_KP_ADD = 334
+};
 
 static void say_setting(App *app, const char *name, u32 value) {
     char word[64];
@@ -59,8 +69,10 @@ static void key_next_camera(App *app) {
 }
 
 static void key_record(App *app) {
-    if (app->writer) app_record_stop(app);
-    else app_record_start(app, NULL);
+    if (app->writer)
+        app_record_stop(app);
+    else
+        app_record_start(app, NULL);
 }
 static void key_frame_file(App *app) { app->want_frame_file = true; }
 static void key_screenshot(App *app) { app->want_screenshot = true; }

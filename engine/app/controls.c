@@ -15,19 +15,15 @@ typedef struct ControlKey {
 } ControlKey;
 
 static const ControlKey control_keys[] = {
-    {'W', {0, 0, 1}, 0},
-    {'S', {0, 0, -1}, 0},
-    {'A', {-1, 0, 0}, 0},
-    {'D', {1, 0, 0}, 0},
+    {'W', {0, 0, 1}, 0},          {'S', {0, 0, -1}, 0},
+    {'A', {-1, 0, 0}, 0},         {'D', {1, 0, 0}, 0},
     {265, {0, 0, 1}, 0},  // up
     {264, {0, 0, -1}, 0}, // down
     {263, {-1, 0, 0}, 0}, // left
     {262, {1, 0, 0}, 0},  // right
-    {' ', {0, 1, 0}, INPUT_JUMP},
-    {'C', {0, -1, 0}, 0},
+    {' ', {0, 1, 0}, INPUT_JUMP}, {'C', {0, -1, 0}, 0},
     {340, {0, 0, 0}, INPUT_RUN}, // shift, left and right
-    {344, {0, 0, 0}, INPUT_RUN},
-    {'F', {0, 0, 0}, INPUT_FLY},
+    {344, {0, 0, 0}, INPUT_RUN},  {'F', {0, 0, 0}, INPUT_FLY},
     {'E', {0, 0, 0}, INPUT_USE},
 };
 _Static_assert(COUNT_OF(control_keys) <= 32, "Controls has a bit per key");
@@ -40,8 +36,10 @@ void controls_look(Controls *controls, f64 right_deg, f64 up_deg) {
 bool controls_key(Controls *controls, int key, bool down) {
     for (u32 i = 0; i < COUNT_OF(control_keys); i++) {
         if (control_keys[i].key != key) continue;
-        if (down) controls->keys_pressed |= 1u << i, controls->keys_held |= 1u << i;
-        else controls->keys_held &= ~(1u << i);
+        if (down)
+            controls->keys_pressed |= 1u << i, controls->keys_held |= 1u << i;
+        else
+            controls->keys_held &= ~(1u << i);
         return true;
     }
     return false;

@@ -1,8 +1,10 @@
-// controls.h: what hands did, as Input: pure bookkeeping, no window system (controls_glfw.c has it).
+// controls.h: what hands did, as Input: pure bookkeeping, no window system (controls_glfw.c has
+// it).
 //
 // Between two ticks the mouse may move many times and a key may go down and up again; a frame may
-// have no tick or five. Nothing is lost: looks add up as fractions of a degree, what does not fit into
-// a tick's whole hundredths stays for the next one, and a short press lasts until a tick has seen it.
+// have no tick or five. Nothing is lost: looks add up as fractions of a degree, what does not fit
+// into a tick's whole hundredths stays for the next one, and a short press lasts until a tick has
+// seen it.
 #ifndef LUZ_CONTROLS_H
 #define LUZ_CONTROLS_H
 #include "../world/input.h"
@@ -14,10 +16,10 @@ extern "C" {
 #define CONTROLS_PAD_DEADZONE   0.16f
 
 typedef struct Controls {
-    f64 look_x_deg, look_y_deg;    // pending
-    u32 keys_held, keys_pressed;   // bit per row of the key table: down now; gone down since a tick
-    f32 pad_move[3], pad_look[2];  // right up forward; right up: -1..1, as they are now
-    u32 pad_held, pad_pressed;     // InputButton
+    f64 look_x_deg, look_y_deg;   // pending
+    u32 keys_held, keys_pressed;  // bit per row of the key table: down now; gone down since a tick
+    f32 pad_move[3], pad_look[2]; // right up forward; right up: -1..1, as they are now
+    u32 pad_held, pad_pressed;    // InputButton
 } Controls;
 
 // Turned by hand (mouse): degrees to the right and up.

@@ -31,7 +31,8 @@ static void poll_gamepad(Controls *controls) {
     if (!found) {
         // Unplugged in mid-walk: nobody goes on walking.
         state = (GLFWgamepadstate){0};
-        state.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] = state.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] = -1;
+        state.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] = state.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] =
+            -1;
     }
     const f32 *axes = state.axes;
     // Triggers rest at -1.
@@ -42,13 +43,13 @@ static void poll_gamepad(Controls *controls) {
     controls->pad_move[2] = -controls_stick(axes[GLFW_GAMEPAD_AXIS_LEFT_Y]);
     controls->pad_look[0] = controls_stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_X]);
     controls->pad_look[1] = -controls_stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]);
-    static const struct { u8 pad; u32 button; } buttons[] = {
-        {GLFW_GAMEPAD_BUTTON_A, INPUT_JUMP},
-        {GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, INPUT_RUN},
-        {GLFW_GAMEPAD_BUTTON_LEFT_THUMB, INPUT_RUN},
-        {GLFW_GAMEPAD_BUTTON_Y, INPUT_FLY},
-        {GLFW_GAMEPAD_BUTTON_X, INPUT_USE},
-        {GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, INPUT_FIRE},
+    static const struct {
+        u8 pad;
+        u32 button;
+    } buttons[] = {
+        {GLFW_GAMEPAD_BUTTON_A, INPUT_JUMP},         {GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, INPUT_RUN},
+        {GLFW_GAMEPAD_BUTTON_LEFT_THUMB, INPUT_RUN}, {GLFW_GAMEPAD_BUTTON_Y, INPUT_FLY},
+        {GLFW_GAMEPAD_BUTTON_X, INPUT_USE},          {GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, INPUT_FIRE},
     };
     u32 held = 0;
     for (u32 i = 0; i < COUNT_OF(buttons); i++)

@@ -8,8 +8,8 @@
 #define MOUSE_DEG_PER_PX 0.10
 
 typedef struct ControlsDevice {
-    bool captured;      // the mouse looks
-    bool has_last;      // the first position after a capture is no movement
+    bool captured; // the mouse looks
+    bool has_last; // the first position after a capture is no movement
     f64 last_x, last_y;
 } ControlsDevice;
 

@@ -1,4 +1,5 @@
-// debug_ui.cpp: the one C++ file of app/: Dear ImGui draws a small panel and all texts of the window.
+// debug_ui.cpp: the one C++ file of app/: Dear ImGui draws a small panel and all texts of the
+// window.
 //
 // Data in: an App (measurements, settings, errors), texts. Data out: an Overlay; settings that the
 // user changed. Called by: window.c. Does not: own settings; the controls are made from the list
@@ -108,7 +109,8 @@ static void panel_frame_times(const App *app) {
     f32 worst = 0.0f;
     for (f32 ms : app->frame_ms) worst = MAX(worst, ms);
     ImGui::PlotHistogram("##frames", app->frame_ms, APP_FRAMES_SHOWN, (int)app->frame_index + 1,
-                         nullptr, 0.0f, MAX(worst, 34.0f), ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
+                         nullptr, 0.0f, MAX(worst, 34.0f),
+                         ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
 }
 
 static void panel_passes(const App *app) {
@@ -182,7 +184,9 @@ static void panel_settings(App *app) {
             ImGui::SliderFloat(desc->name, (f32 *)field, (f32)desc->min, max, "%.2f", flags);
             break;
         }
-        case SETTING_U32: ImGui::InputInt(desc->name, (int *)field, 64, 256); break;
+        case SETTING_U32:
+            ImGui::InputInt(desc->name, (int *)field, 64, 256);
+            break;
         }
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", desc->help);
     }
@@ -253,8 +257,10 @@ static const Overlay *build_overlay(DebugUi *ui, u32 width_px, u32 height_px) {
 
 const Overlay *debug_ui_frame(DebugUi *ui, App *app, u32 width_px, u32 height_px, bool pointer) {
     ImGuiIO &io = ImGui::GetIO();
-    if (pointer) io.ConfigFlags &= ~ImGuiConfigFlags_NoMouse;
-    else io.ConfigFlags |= ImGuiConfigFlags_NoMouse;
+    if (pointer)
+        io.ConfigFlags &= ~ImGuiConfigFlags_NoMouse;
+    else
+        io.ConfigFlags |= ImGuiConfigFlags_NoMouse;
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     draw_texts(ui, app, width_px, height_px);

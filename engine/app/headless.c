@@ -1,4 +1,5 @@
-// headless.c: the shell without a display: a tour of the level's cameras as pictures in a directory.
+// headless.c: the shell without a display: a tour of the level's cameras as pictures in a
+// directory.
 //
 // Data in: an App with a level. Data out: OUT/tour/NN_camera.png, a table on stdout (name, lights,
 // milliseconds, hash). Called by: luz.c, when there is no display or the desc asks for it.
@@ -30,7 +31,8 @@ static void show_progress(u32 done, u32 total, const char *what) {
 
 static int headless_replay(App *app) {
     f64 start = clock_now_ms();
-    while (app_tick(app, (Input){0})) {}
+    while (app_tick(app, (Input){0})) {
+    }
     f64 seconds = (clock_now_ms() - start) / 1000.0;
     if (app->replay_differences > 0) {
         printf("replay: %u of %u ticks differ\n", app->replay_differences, app->replay_tick);

@@ -53,7 +53,8 @@ static void print_help(const char *program, const AppDesc *desc) {
     for (u32 i = 0; i < COUNT_OF(options_table); i++) {
         const Option *option = &options_table[i];
         char left[40];
-        snprintf(left, sizeof left, "%s %s", option->name, option->argument ? option->argument : "");
+        snprintf(left, sizeof left, "%s %s", option->name,
+                 option->argument ? option->argument : "");
         printf("  %-18s %s\n", left, option->help);
     }
     if (desc->help) printf("%s\n", desc->help);
@@ -61,8 +62,10 @@ static void print_help(const char *program, const AppDesc *desc) {
     for (u32 i = 0; i < render_setting_count; i++) {
         const SettingDesc *setting = &render_setting_descs[i];
         printf("  %-18s %s", setting->name, setting->help);
-        if (setting->type == SETTING_ENUM) printf(" (%s)", setting->words);
-        else if (setting->type != SETTING_BOOL) printf(" (%g .. %g)", setting->min, setting->max);
+        if (setting->type == SETTING_ENUM)
+            printf(" (%s)", setting->words);
+        else if (setting->type != SETTING_BOOL)
+            printf(" (%g .. %g)", setting->min, setting->max);
         printf("\n");
     }
     printf("\nIn the window, H lists the keys.\n");
@@ -102,8 +105,12 @@ static bool apply_option(const Option *option, const char *value, AppDesc *desc,
     void *field = (u8 *)desc + option->offset;
     f64 number = 0.0;
     switch (option->kind) {
-    case OPTION_FLAG: *(bool *)field = true; return true;
-    case OPTION_TEXT: *(const char **)field = value; return true;
+    case OPTION_FLAG:
+        *(bool *)field = true;
+        return true;
+    case OPTION_TEXT:
+        *(const char **)field = value;
+        return true;
     case OPTION_COUNT:
         if (!parse_number(value, 0.0, 1e6, &number) || number != (f64)(u32)number) return false;
         *(u32 *)field = (u32)number;
@@ -112,12 +119,14 @@ static bool apply_option(const Option *option, const char *value, AppDesc *desc,
         if (!parse_number(value, 0.0, 1e6, &number)) return false;
         *(f32 *)field = (f32)number;
         return true;
-    case OPTION_SIZE: return parse_size(value, desc);
+    case OPTION_SIZE:
+        return parse_size(value, desc);
     case OPTION_SET:
         desc->fixed_resolution |= strncmp(value, "scale=", 6) == 0;
         desc->fixed_resolution |= strncmp(value, "target_ms=", 10) == 0;
         return settings_set(&options->settings, value);
-    case OPTION_HELP: break;
+    case OPTION_HELP:
+        break;
     }
     return true;
 }
@@ -138,15 +147,18 @@ int app_parse_options(int argc, char **argv, AppDesc *desc, AppOptions *options)
             if (strlen(options_table[j].name) == length &&
                 strncmp(options_table[j].name, word, length) == 0)
                 option = &options_table[j];
-        if (!option && strcmp(word, "-h") == 0) option = &options_table[COUNT_OF(options_table) - 1];
+        if (!option && strcmp(word, "-h") == 0)
+            option = &options_table[COUNT_OF(options_table) - 1];
         if (!option) return report_unknown(word);
         if (option->kind == OPTION_HELP) {
             print_help(argv[0], desc);
             return 0;
         }
         const char *value = NULL;
-        if (option->argument && word[length] == '=') value = word + length + 1;
-        else if (option->argument && i + 1 < argc) value = argv[++i];
+        if (option->argument && word[length] == '=')
+            value = word + length + 1;
+        else if (option->argument && i + 1 < argc)
+            value = argv[++i];
         if (option->argument && !value) {
             LOG(USAGE, "%s needs %s: %s", option->name, option->argument, option->help);
             return 2;

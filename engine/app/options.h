@@ -14,8 +14,9 @@ typedef struct AppOptions {
 } AppOptions;
 
 #define OPTIONS_GO_ON (-1)
-// Fills the desc with what argv says, over what is in it. Returns OPTIONS_GO_ON, or the exit code of
-// a program that is to end now: 0 after --help, 2 after a mistake (LOG USAGE, with a suggestion).
+// Fills the desc with what argv says, over what is in it. Returns OPTIONS_GO_ON, or the exit code
+// of a program that is to end now: 0 after --help, 2 after a mistake (LOG USAGE, with a
+// suggestion).
 int app_parse_options(int argc, char **argv, AppDesc *desc, AppOptions *options);
 
 #ifdef __cplusplus

@@ -15,7 +15,7 @@ typedef struct OverlayBuild {
     u16 indices[OVERLAY_INDICES_CAP];
     OverlayCommand commands[OVERLAY_COMMANDS_CAP];
     Overlay overlay;
-    u32 width_px, height_px; // of the window
+    u32 width_px, height_px;       // of the window
     u32 first_vertex, first_index; // of the current list
 } OverlayBuild;
 

@@ -1,7 +1,7 @@
 // pacing.c: fixed-step accumulator and resolution controller.
 //
-// Data in: times of frames. Data out: a number of ticks, a scale. Called by: window.c, once a frame.
-// Does not: read a clock.
+// Data in: times of frames. Data out: a number of ticks, a scale. Called by: window.c, once a
+// frame. Does not: read a clock.
 #include "pacing.h"
 #include "../world/input.h"
 #include <math.h>
@@ -57,8 +57,10 @@ static void learn_floor(ScaleControl *control, f32 ms, f32 scale) {
     f32 fixed = ms - pixels * scale * scale;
     control->before_ms = 0.0f;
     control->floor_left = SCALE_FLOOR_FRAMES;
-    if (pixels <= 0.0f) control->floor = before; // it did not help at all
-    else control->floor = scale_on_grid(sqrtf(MAX(fixed, 0.0f) / (SCALE_PIXELS_WORTH * pixels)));
+    control->floor = before; // it did not help at all
+    if (pixels <= 0.0f) return;
+    f32 worth = sqrtf(MAX(fixed, 0.0f) / (SCALE_PIXELS_WORTH * pixels));
+    control->floor = MIN(scale_on_grid(worth), before);
 }
 
 // Too slow for some time: the smallest step down that should hold, but not below the floor.
@@ -67,7 +69,7 @@ static f32 step_down(ScaleControl *control, f32 target_ms, f32 scale) {
     learn_floor(control, mean, scale);
     while (smaller > SCALE_MIN && predicted_ms(mean, scale, smaller) > target_ms)
         smaller -= SCALE_STEP;
-    smaller = MAX(smaller, control->floor);
+    smaller = MAX(smaller, control->floor); // at least SCALE_MIN; may be a step back up
     if (smaller == scale) {
         control->slow_frames = 0;
         control->slow_ms = 0.0f;
@@ -101,8 +103,8 @@ static f32 step_up(ScaleControl *control, f32 target_ms, f32 scale) {
 f32 scale_control_update(ScaleControl *control, f32 frame_ms, f32 target_ms, f32 scale) {
     if (target_ms <= 0.0f) return scale;
     if (!control->up_wait)
-        *control = (ScaleControl){
-            .up_wait = SCALE_UP_FRAMES, .since_up = UINT32_MAX, .floor = SCALE_MIN};
+        *control =
+            (ScaleControl){.up_wait = SCALE_UP_FRAMES, .since_up = UINT32_MAX, .floor = SCALE_MIN};
     control->since_up += control->since_up < UINT32_MAX;
     if (control->floor_left > 0 && --control->floor_left == 0) control->floor = SCALE_MIN;
     if (control->settle > 0) {
@@ -121,8 +123,7 @@ f32 scale_control_update(ScaleControl *control, f32 frame_ms, f32 target_ms, f32
         control->fast_frames++;
         control->fast_ms += frame_ms;
     }
-    if (control->slow_frames >= SCALE_DOWN_FRAMES && scale > SCALE_MIN)
-        return step_down(control, target_ms, scale);
+    if (control->slow_frames >= SCALE_DOWN_FRAMES) return step_down(control, target_ms, scale);
     if (control->fast_frames >= control->up_wait && scale < SCALE_MAX)
         return step_up(control, target_ms, scale);
     return scale;

@@ -21,11 +21,11 @@
 extern int glfwCreateWindowSurface(void *vk_instance, GLFWwindow *window, const void *allocator,
                                    u64 *vk_surface);
 
-#define FRAME_MS_MIN        3.0   // some systems do not throttle: 333 pictures a second are plenty
-#define STATUS_MS           1000.0
-#define RESIZE_RETRY_MS     20.0
-#define RESIZE_FAILURES_MAX 50    // then the device is made anew
-#define DEVICE_LOSSES_MAX   3     // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
+#define FRAME_MS_MIN          3.0 // some systems do not throttle: 333 pictures a second are plenty
+#define STATUS_MS             1000.0
+#define RESIZE_RETRY_MS       20.0
+#define RESIZE_FAILURES_MAX   50 // then the device is made anew
+#define DEVICE_LOSSES_MAX     3  // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
 #define DEVICE_LOSS_WINDOW_MS 10000.0
 
 typedef struct Window {
@@ -88,8 +88,10 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     bool down = action == GLFW_PRESS;
     if (down && debug_ui_wants_keyboard(window->ui)) return;
     if (down && key == GLFW_KEY_ESCAPE) {
-        if (!window->device.captured) window->quit = true;
-        else app_say(window->app, "the mouse is free; click to look around again, Escape quits");
+        if (!window->device.captured)
+            window->quit = true;
+        else
+            app_say(window->app, "the mouse is free; click to look around again, Escape quits");
         capture_mouse(window, false);
         return;
     }
@@ -206,8 +208,8 @@ static void draw_bar(Window *window, f32 share) {
 static void on_progress(void *user, u32 done, u32 total, const char *what) {
     Window *window = user;
     char title[256];
-    snprintf(title, sizeof title, "%s: preparing %s (%u of %u)", window->app->desc.title, what, done,
-             total);
+    snprintf(title, sizeof title, "%s: preparing %s (%u of %u)", window->app->desc.title, what,
+             done, total);
     glfwSetWindowTitle(window->handle, title);
     glfwPollEvents(); // the system must not think that we hang
     draw_bar(window, total ? (f32)done / (f32)total : 1.0f);
@@ -291,8 +293,8 @@ static void sleep_ms(f64 ms) {
 }
 
 // What the frame took without waiting for the screen: with it, a fast machine at 60 pictures a
-// second would always look busy. The device's share comes from its timers, because a busy device and
-// a slow screen make us wait in the same places.
+// second would always look busy. The device's share comes from its timers, because a busy device
+// and a slow screen make us wait in the same places.
 static f32 work_ms(const Window *window, f32 frame_ms) {
     GpuTimer timers[GPU_TIMERS_CAP];
     u32 count = gpu_timers(window->app->gpu, timers, GPU_TIMERS_CAP);
@@ -366,8 +368,8 @@ static bool time_is_up(const Window *window) {
 static bool open_window(Window *window) {
     const AppDesc *desc = &window->app->desc;
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    window->handle = glfwCreateWindow((int)desc->width_px, (int)desc->height_px, desc->title, NULL,
-                                      NULL);
+    window->handle =
+        glfwCreateWindow((int)desc->width_px, (int)desc->height_px, desc->title, NULL, NULL);
     if (!window->handle) return false;
     glfwSetWindowUserPointer(window->handle, window);
     glfwSetWindowSizeLimits(window->handle, 64, 64, GLFW_DONT_CARE, GLFW_DONT_CARE);

@@ -26,7 +26,8 @@ TEST(app_controls, random_looks_add_up) {
             f64 degrees = (f64)random_range(seed, run, i, -7.0f, 7.0f);
             given += degrees;
             controls_look(&controls, degrees, 0.0);
-            if (random_u32(seed, run + 100, i) % 3) taken += controls_take(&controls).look_x / 100.0;
+            if (random_u32(seed, run + 100, i) % 3)
+                taken += controls_take(&controls).look_x / 100.0;
         }
         taken += controls_take(&controls).look_x / 100.0;
         ASSERT_NEAR(taken, given, 0.00501); // half a hundredth is still pending

@@ -1,5 +1,5 @@
-// app_luz.c: tests of the public face without a device: a world from code, a component and a system of
-// a program's own, recording and replay, keys.
+// app_luz.c: tests of the public face without a device: a world from code, a component and a system
+// of a program's own, recording and replay, keys.
 #include "../../engine/luz.h"
 #include "../test.h"
 #include <string.h>
@@ -151,10 +151,11 @@ TEST(app_luz, keys_change_settings) {
     luz_close(luz);
 }
 
-static const char level_text[] = "[[model]]\nname = \"box\"\nshape = \"cube\"\n"
-                                 "[[entity]]\nname = \"main\"\ntransform.position = [0, 1.7, 6]\n"
-                                 "camera = { fov = 60 }\n"
-                                 "[[entity]]\ninstance = { model = \"box\" }\nspin = { speed = 45 }\n";
+static const char level_text[] =
+    "[[model]]\nname = \"box\"\nshape = \"cube\"\n"
+    "[[entity]]\nname = \"main\"\ntransform.position = [0, 1.7, 6]\n"
+    "camera = { fov = 60 }\n"
+    "[[entity]]\ninstance = { model = \"box\" }\nspin = { speed = 45 }\n";
 
 TEST(app_luz, a_recording_replays) {
     const char *level = test_temp_path("spin.toml"), *path = test_temp_path("spin.luzr");
@@ -166,7 +167,9 @@ TEST(app_luz, a_recording_replays) {
     Luz *luz = luz_open(&desc);
     assert_non_null(luz);
     for (u32 i = 0; i < 90; i++)
-        luz_step(luz, (Input){.move_z = 127, .look_x = (i16)(i * 7), .buttons = i == 30 ? INPUT_JUMP : 0});
+        luz_step(
+            luz,
+            (Input){.move_z = 127, .look_x = (i16)(i * 7), .buttons = i == 30 ? INPUT_JUMP : 0});
     luz_close(luz);
     assert_true(file_exists(path));
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 // argv from words; the parser never writes to them.
-#define PARSE(desc, options, ...)                                                         \
-    app_parse_options((int)(sizeof((char *[]){"demo", __VA_ARGS__}) / sizeof(char *)),    \
+#define PARSE(desc, options, ...)                                                                  \
+    app_parse_options((int)(sizeof((char *[]){"demo", __VA_ARGS__}) / sizeof(char *)),             \
                       (char *[]){"demo", __VA_ARGS__}, (desc), (options))
 
 TEST(app_options, everything) {

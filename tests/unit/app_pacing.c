@@ -105,6 +105,9 @@ TEST(app_pacing, scale_is_not_given_away_for_nothing) {
     assert_true(scale == SCALE_MAX);
     run_machine(&control, (Machine){90, 10, 0.02f}, 33.0f, scale, 3600, &changes);
     assert_true(changes <= 10);
+    // The same from a small picture on: it is not made smaller for long.
+    control = (ScaleControl){0};
+    assert_true(run_machine(&control, (Machine){90, 10, 0}, 33.0f, 0.5f, 200, NULL) == 0.5f);
     // Half and half: it goes as far down as pixels still matter.
     control = (ScaleControl){0};
     scale = run_machine(&control, (Machine){60, 60, 0.02f}, 33.0f, 1.0f, 200, NULL);

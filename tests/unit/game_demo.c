@@ -8,7 +8,8 @@
 
 static const char level_text[] =
     "[[model]]\nname = \"box\"\nshape = \"cube\"\n"
-    "[[entity]]\nname = \"spawn\"\ntransform.position = [0, 1.63, 20]\ncamera = {}\nwalker.fly = true\n"
+    "[[entity]]\nname = \"spawn\"\ntransform.position = [0, 1.63, 20]\ncamera = {}\nwalker.fly = "
+    "true\n"
     "[[entity]]\nname = \"a\"\ntransform.position = [0, 5, 0]\ncamera = { fov = 40 }\n"
     "[[entity]]\nname = \"b\"\ntransform = { position = [10, 5, 0], rotation = [0, 170, 0] }\n"
     "camera = { fov = 60 }\n"
@@ -41,7 +42,9 @@ static u32 place_row(Luz *luz, const char *name) {
     return row;
 }
 
-static TransformTable *places_of(Luz *luz) { return WORLD_TABLE(luz_world(luz), Transform, transform); }
+static TransformTable *places_of(Luz *luz) {
+    return WORLD_TABLE(luz_world(luz), Transform, transform);
+}
 
 // The walker is put somewhere, and a second goes by.
 static void stand(Luz *luz, f32 x, f32 z) {
@@ -121,7 +124,8 @@ TEST(game_demo, the_same_game_twice) {
     for (u32 run = 0; run < 2; run++) {
         Luz *luz = open_demo();
         for (u32 i = 0; i < 600; i++)
-            luz_step(luz, (Input){.move_z = 127, .look_x = (i16)(i % 17 - 8), .buttons = INPUT_RUN});
+            luz_step(luz,
+                     (Input){.move_z = 127, .look_x = (i16)(i % 17 - 8), .buttons = INPUT_RUN});
         hashes[run] = world_hash(luz_world(luz));
         luz_close(luz);
     }

@@ -32,7 +32,8 @@ static int run(const char *format, ...) {
 }
 
 TEST_WINDOW(window, play) {
-    static const char *const needed[] = {"xvfb-run", "xauth", "xdotool", "import", "convert", "awk"};
+    static const char *const needed[] = {"xvfb-run", "xauth",   "xdotool",
+                                         "import",   "convert", "awk"};
     for (u32 i = 0; i < COUNT_OF(needed); i++)
         if (!have_program(needed[i])) TEST_SKIP("%s is not installed", needed[i]);
     char demo[600];
@@ -54,7 +55,8 @@ TEST_WINDOW(window, no_display) {
                          demo, out, out),
                      0);
     assert_int_equal(run("grep -q APP_NO_DISPLAY %s/log", out), 0);
-    assert_int_equal(run("test -s %s/tour/00_main.png && test -s %s/tour/01_side.png", out, out), 0);
+    assert_int_equal(run("test -s %s/tour/00_main.png && test -s %s/tour/01_side.png", out, out),
+                     0);
     assert_int_equal(run("! grep -q GPU_VALIDATION %s/log", out), 0);
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# window.sh DEMO DIRECTORY: plays the demo in a window as a person would: keys, mouse, resizing, edits.
+# window.sh DEMO DIRECTORY: plays the demo in a window as a person would: keys, mouse, edits.
 #
 # Data in: the program, a directory for its files, a display ($DISPLAY). Data out: exit status 0 if
 # everything was seen to happen, else 1 after a line that says what was not. Called by window.c
@@ -24,7 +24,10 @@ fail() {
 }
 
 # A field of the status line: a word, a number, or the inside of [..] or "..".
-field() { sed -n "s/.*\"$1\": \(\"\([^\"]*\)\"\|\[\([^]]*\)\]\|\([^,}]*\)\).*/\2\3\4/p" "$status" 2>/dev/null; }
+field() {
+    sed -n "s/.*\"$1\": \(\"\([^\"]*\)\"\|\[\([^]]*\)\]\|\([^,}]*\)\).*/\2\3\4/p" "$status" \
+        2>/dev/null
+}
 axis() { field position | cut -d, -f"$1"; }
 # Floating point comparison: is EXPRESSION
 is() { awk "BEGIN { exit !($*) }"; }
@@ -46,7 +49,10 @@ cp "$here/room.toml" "$level"
     >"$log" 2>&1 &
 pid=$!
 
-find_window() { window=$(xdotool search --onlyvisible --name '^luz' 2>/dev/null | head -n 1) && [ -n "$window" ]; }
+find_window() {
+    window=$(xdotool search --onlyvisible --name '^luz' 2>/dev/null | head -n 1)
+    [ -n "$window" ]
+}
 wait_for 60 "a window" find_window
 wait_for 120 "the first ticks" ticking 5
 field_is size "640, 360" || fail "size is $(field size), not 640, 360"
@@ -120,9 +126,10 @@ test -s "$work/out/recording_000.luzr" || fail "no recording was written"
 
 # --- the picture ---
 import -window root "$work/root.png" || fail "no picture of the screen"
-mean=$(convert "$work/root.png" -crop 640x360+0+0 -colorspace Gray -format '%[fx:mean]' info:)
+measure() { convert "$work/root.png" -crop 640x360+0+0 -colorspace Gray -format "%[fx:$1]" info:; }
+mean=$(measure mean)
 is "$mean > 0.01" || fail "the window is black (mean $mean)"
-spread=$(convert "$work/root.png" -crop 640x360+0+0 -colorspace Gray -format '%[fx:standard_deviation]' info:)
+spread=$(measure standard_deviation)
 is "$spread > 0.01" || fail "the window shows one colour (deviation $spread)"
 
 # --- leaving: Escape frees the mouse, Escape again quits ---
