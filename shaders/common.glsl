@@ -20,6 +20,8 @@ layout(constant_id = SPEC_SUBGROUP_CULL) const uint SUBGROUP_CULL = 1;
 layout(constant_id = SPEC_TILE_LISTS) const uint TILE_LISTS = 0;
 layout(constant_id = SPEC_TONEMAP) const uint TONEMAP = 1;
 layout(constant_id = SPEC_DIRECTIONALS) const uint DIRECTIONAL_COUNT = 0;
+layout(constant_id = SPEC_TEXTURES) const uint TEXTURES = 3;
+layout(constant_id = SPEC_EXACT_POWER) const uint EXACT_POWER = 0;
 layout(constant_id = SPEC_LIGHT_BLOCKS) const uint LIGHT_BLOCKS = 0;
 
 const float PI = 3.14159265358979;
@@ -44,6 +46,14 @@ vec3 position_from_depth(vec2 pixel_center, float depth) {
                     1.0 - pixel_center.y * frame.viewport.w * 2.0);
     vec3 ray = frame.ray_right.xyz * ndc.x + frame.ray_up.xyz * ndc.y + frame.ray_forward.xyz;
     return frame.camera.xyz + ray * (frame.camera.w / max(depth, 1e-9));
+}
+
+// The sRGB curve from square roots, a quarter of the price of the three pow() (Chilliant 2012);
+// within 0.25 / 255 of the exact one.
+vec3 srgb_encode_fast(vec3 c) {
+    vec3 a = sqrt(max(c, vec3(0.0))), b = sqrt(a), d = sqrt(b);
+    return mix(0.662002687 * a + 0.684122060 * b - 0.323583601 * d - 0.0225411470 * c, 12.92 * c,
+               lessThanEqual(c, vec3(0.0031308)));
 }
 
 // Exact piecewise sRGB curve (IEC 61966-2-1).

@@ -13,7 +13,7 @@ void main() {
     vec3 p = mesh_world_position();
     gl_Position = frame.view_projection * vec4(p, 1.0);
     out_normal = mesh_world_normal();
-    out_tangent = mesh_world_tangent();
+    out_tangent = (TEXTURES & 2u) != 0u ? mesh_world_tangent() : vec4(0.0);
     out_uv = in_uv;
     out_color = in_color;
     out_material = in_ids.x;

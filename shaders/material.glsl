@@ -9,7 +9,7 @@ layout(set = 1, binding = BINDING_EMISSIVE_TEXTURE) uniform sampler2D emissive_t
 
 // Albedo (linear rgb) and alpha; discards holes when the pipeline is for masked materials.
 vec4 material_albedo(uint material, vec2 uv, vec4 color) {
-    vec4 texel = texture(albedo_texture, uv);
+    vec4 texel = (TEXTURES & 1u) != 0u ? texture(albedo_texture, uv) : vec4(1.0);
     vec4 factor = materials[material].albedo;
     if (ALPHA_MASK != 0u && texel.a * color.a < factor.w) discard;
     return vec4(texel.rgb * factor.rgb * color.rgb, texel.a * color.a);
@@ -18,6 +18,7 @@ vec4 material_albedo(uint material, vec2 uv, vec4 color) {
 // The texture's neutral texel is (128, 128, 255): decoded so that it means "straight up" exactly.
 vec3 material_normal(vec2 uv, vec3 normal, vec4 tangent) {
     vec3 n = normalize(normal);
+    if ((TEXTURES & 2u) == 0u) return gl_FrontFacing ? n : -n;
     vec3 t = tangent.xyz - n * dot(n, tangent.xyz);
     t *= inversesqrt(max(dot(t, t), 1e-12));
     vec3 b = cross(n, t) * tangent.w;

@@ -73,7 +73,9 @@ typedef struct MeshVertex {
 #define SPEC_LIGHT_BLOCKS  10 // uniform blocks that hold all lights: 1, 2; 0 = too many, use storage
 #define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades in turn (1..8)
 #define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
-#define SPEC_COUNT         13
+#define SPEC_TEXTURES      13 // geometry: bit 0 has an albedo texture, bit 1 a normal map
+#define SPEC_EXACT_POWER   14 // 1 = pow() for highlights, 0 = the cheap one
+#define SPEC_COUNT         15
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32

@@ -12,5 +12,5 @@ void main() {
     c = TONEMAP != 0u ? c / (1.0 + c) : clamp(c, 0.0, 1.0);
     // Interleaved gradient noise (Jimenez 2014).
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    out_color = vec4(srgb_encode(c) + (noise - 0.5) / 255.0, 1.0);
+    out_color = vec4(srgb_encode_fast(c) + (noise - 0.5) / 255.0, 1.0);
 }

@@ -201,7 +201,7 @@ typedef enum GpuVertexLayout {
 } GpuVertexLayout;
 
 #define GPU_TARGETS_CAP   8
-#define GPU_SPEC_CAP      16
+#define GPU_SPEC_CAP      32
 #define GPU_GROUPS_CAP    4
 typedef struct GpuPipelineDesc {
     const char *label;

@@ -76,7 +76,7 @@ bool text_upload(Renderer *renderer, const Packet *packet) {
 
 static void overlay_bind(const PassContext *c, PipelineKind kind, f32 width, f32 height,
                          GpuBuffer vertices, GpuBuffer indices) {
-    gpu_cmd_bind_pipeline(c->cmd, pipeline_get(c->renderer, c->packet, kind, false, false));
+    gpu_cmd_bind_pipeline(c->cmd, pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN));
     gpu_cmd_bind_group(c->cmd, 0, c->renderer->frame_group);
     f32 push[4] = {1.0f / width, 1.0f / height, 0, 0};
     gpu_cmd_push(c->cmd, push, sizeof push);

@@ -30,7 +30,10 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
         if (draw->mesh >= r->mesh_count || r->meshes[draw->mesh].lods[0].index_count == 0) continue;
         const PacketMaterial *material = &materials[draw->material];
         GpuPipeline pipeline =
-            pipeline_get(r, c->packet, kind, alpha_mask, material->double_sided != 0);
+            pipeline_get(r, c->packet, kind, (PipelineVariant){
+                .alpha_mask = alpha_mask,
+                .double_sided = material->double_sided != 0,
+                .textures = (material->albedo_texture ? 1 : 0) | (material->normal_texture ? 2 : 0)});
         if (!pipeline.id) continue;
         if (pipeline.id != bound.id) {
             bind_frame(c, pipeline);
@@ -51,7 +54,7 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
 }
 
 static void draw_fullscreen(const PassContext *c, PipelineKind kind) {
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, false, false);
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);
     gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
@@ -61,7 +64,7 @@ static void draw_fullscreen(const PassContext *c, PipelineKind kind) {
 // One full-screen triangle a light, lights [first, first + count).
 static void draw_lights(const PassContext *c, PipelineKind kind, u32 first, u32 count) {
     if (count == 0) return;
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, false, false);
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);
     gpu_cmd_bind_vertices(c->cmd, 0, c->renderer->buffers[FRAME_BUFFER_LIGHTS],
@@ -153,7 +156,7 @@ static const Pass resolve_pass = {
     resolve_record, NULL};
 
 static void tiled_record(const PassContext *c) {
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, false, false);
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);
     gpu_cmd_dispatch(c->cmd, (c->packet->width_px + 7) / 8, (c->packet->height_px + 7) / 8, 1);
@@ -208,7 +211,7 @@ static void present_record(const PassContext *c) {
     gpu_swapchain_size(c->renderer->gpu, &width, &height);
     gpu_cmd_begin_rendering(
         c->cmd, &(GpuRendering){.to_swapchain = true, .width = width, .height = height});
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_PRESENT, false, false);
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_PRESENT, PIPELINE_PLAIN);
     if (pipeline.id) {
         bind_frame(c, pipeline);
         f32 push[4] = {1.0f / (f32)width, 1.0f / (f32)height, 0, 0};

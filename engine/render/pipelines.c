@@ -18,7 +18,10 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 #define SPEC_BIT(id) (1u << (id))
 #define SPEC_LIGHTING \
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) |          \
-     SPEC_BIT(SPEC_SPOTS) | SPEC_BIT(SPEC_DIRECTIONALS) | SPEC_BIT(SPEC_LIGHT_BLOCKS))
+     SPEC_BIT(SPEC_SPOTS) | SPEC_BIT(SPEC_DIRECTIONALS) | SPEC_BIT(SPEC_LIGHT_BLOCKS) |        \
+     SPEC_BIT(SPEC_EXACT_POWER))
+#define SPEC_ONE_LIGHT \
+    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER))
 
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
@@ -43,26 +46,27 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_GBUFFER] = {.label = "gbuffer", .vertex = "geometry.vert", .fragment = "gbuffer.frag",
         .targets = {RESOURCE_GBUFFER_ALBEDO, RESOURCE_GBUFFER_NORMAL}, .target_count = 2,
         .has_depth = true, .depth = GPU_DEPTH_WRITE, .vertex_layout = GPU_VERTEX_MESH,
-        .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK)},
+        .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_FORWARD] = {.label = "forward", .vertex = "forward.vert", .fragment = "forward.frag",
         .targets = {RESOURCE_HDR}, .target_count = 1, .has_depth = true,
         .depth = GPU_DEPTH_WRITE, .vertex_layout = GPU_VERTEX_MESH,
-        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_ALPHA_MASK)},
+        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_FORWARD_BLEND] = {.label = "forward blend", .vertex = "forward.vert",
         .fragment = "forward.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
         .has_depth = true, .depth = GPU_DEPTH_TEST, .blend = GPU_BLEND_ALPHA,
-        .vertex_layout = GPU_VERTEX_MESH, .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TILE_LISTS)},
+        .vertex_layout = GPU_VERTEX_MESH,
+        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TILE_LISTS) | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_DEFERRED_BASE] = {.label = "deferred base", .vertex = "fullscreen.vert",
         .fragment = "deferred_base.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
         .cull = GPU_CULL_NONE, .spec_mask = SPEC_LIGHTING},
     [PIPELINE_DEFERRED_POINTS] = {.label = "deferred points", .vertex = "deferred_light.vert",
         .fragment = "deferred_light.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
         .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .vertex_layout = GPU_VERTEX_LIGHT,
-        .spec_mask = SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION)},
+        .spec_mask = SPEC_ONE_LIGHT},
     [PIPELINE_DEFERRED_SPOTS] = {.label = "deferred spots", .vertex = "deferred_light.vert",
         .fragment = "deferred_light.frag", .targets = {RESOURCE_ACCUMULATION}, .target_count = 1,
         .cull = GPU_CULL_NONE, .blend = GPU_BLEND_ADD, .vertex_layout = GPU_VERTEX_LIGHT,
-        .spec_mask = SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SPOTS)},
+        .spec_mask = SPEC_ONE_LIGHT | SPEC_BIT(SPEC_SPOTS)},
     [PIPELINE_DEFERRED_RESOLVE] = {.label = "deferred resolve", .vertex = "fullscreen.vert",
         .fragment = "deferred_resolve.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
         .cull = GPU_CULL_NONE},
@@ -75,7 +79,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_EMISSIVE] = {.label = "emissive", .vertex = "geometry.vert",
         .fragment = "emissive.frag", .targets = {RESOURCE_HDR}, .target_count = 1,
         .has_depth = true, .depth = GPU_DEPTH_TEST, .blend = GPU_BLEND_ADD,
-        .vertex_layout = GPU_VERTEX_MESH, .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK)},
+        .vertex_layout = GPU_VERTEX_MESH,
+        .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_TONEMAP] = {.label = "tonemap", .vertex = "fullscreen.vert",
         .fragment = "tonemap.frag", .targets = {RESOURCE_LDR}, .target_count = 1,
         .cull = GPU_CULL_NONE, .spec_mask = SPEC_BIT(SPEC_TONEMAP)},
@@ -124,22 +129,24 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
 #define LOOP_ITERATIONS_SAFE 60000
 
 static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
-    u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
+    u32 pixels = 8;
     while (pixels > 1 && (u64)packet->counts.tile_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
         pixels /= 2;
     return pixels;
 }
 
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
-                         bool alpha_mask, bool double_sided) {
+                         PipelineVariant variant) {
     u32 pixels_per_lane = tiled_pixels_per_lane(renderer, packet);
     const RenderSettings *settings = &packet->settings;
-    PipelineKey key = {.kind = kind, .double_sided = double_sided};
+    PipelineKey key = {.kind = kind, .double_sided = variant.double_sided};
     u32 spec[SPEC_COUNT] = {
         [SPEC_BRDF_MASK] = packet->brdf_mask,
         [SPEC_ATTENUATION] = packet->attenuation,
         [SPEC_SHADOW] = packet->shadow_size_px > 0,
-        [SPEC_ALPHA_MASK] = alpha_mask,
+        [SPEC_ALPHA_MASK] = variant.alpha_mask,
+        [SPEC_TEXTURES] = variant.textures,
+        [SPEC_EXACT_POWER] = settings->specular == SPECULAR_EXACT,
         [SPEC_SPOTS] = packet->spots.count > 0,
         [SPEC_DEBUG_VIEW] = settings->view,
         [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,

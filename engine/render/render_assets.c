@@ -23,7 +23,8 @@ bool render_assets_create(Renderer *renderer) {
     // The software driver pays for anisotropy by the sample; a GPU hardly does.
     f32 anisotropy = gpu_info(gpu)->is_software ? 0.0f : MIN(8.0f, gpu_info(gpu)->max_anisotropy);
     renderer->sampler_repeat = gpu_create_sampler(
-        gpu, &(GpuSamplerDesc){.label = "repeat", .repeat = true, .anisotropy = anisotropy});
+        gpu, &(GpuSamplerDesc){.label = "repeat", .repeat = true, .anisotropy = anisotropy,
+                               .nearest_mips = gpu_info(gpu)->is_software});
     renderer->sampler_shadow =
         gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "shadow", .compare_greater = true});
     renderer->white = texture_1x1(gpu, "white", 0xFFFFFFFFu);

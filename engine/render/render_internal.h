@@ -157,9 +157,15 @@ struct Renderer {
     RendererStats stats;
 };
 
+// What of a material a pipeline is specialised for.
+typedef struct PipelineVariant {
+    bool alpha_mask, double_sided;
+    u32 textures; // see SPEC_TEXTURES
+} PipelineVariant;
 // pipelines.c: from the cache or newly made. {0} if the device refuses (LOG).
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
-                         bool alpha_mask, bool double_sided);
+                         PipelineVariant variant);
+#define PIPELINE_PLAIN ((PipelineVariant){0})
 void pipelines_destroy(Renderer *renderer);
 
 // render_assets.c
