@@ -31,6 +31,10 @@ u32 store_add_model(AssetStore *store, const Model *model);
 // image_build_mips. 0 with a message at a limit. The pixels may be written until the load ends.
 u32 store_reserve_texture(AssetStore *store, u32 width, u32 height, TextureKind kind,
                           bool with_mips, u8 **pixels);
+// Models share textures: the one of this kind that was made from encoded bytes of this hash, or 0;
+// and makes a complete texture one that can be found.
+u32 store_find_texture(const AssetStore *store, u64 hash, TextureKind kind);
+void store_share_texture(AssetStore *store, u32 texture, u64 hash);
 // Memory that may be refused, for sizes that come from outside: NULL instead of an assert.
 void *scratch_try_push(Arena *arena, u64 count, u64 size);
 // The box of eight transformed corners grows the model's box.

@@ -1,14 +1,16 @@
 // gltf_material.c: glTF materials and their images to the engine's terms.
 //
 // Data in: checked GltfRaw. Data out: textures in the store (one per image and kind, decoded by all
-// threads), model->materials. Called by asset_load_model. Does not: refuse a model for a missing or
-// damaged picture: a warning, and the checker takes its place (flat, for normal maps).
+// threads; what another model has brought already is shared), model->materials. Called by
+// asset_load_model. Does not: refuse a model for a missing or damaged picture: a warning, and the
+// checker takes its place (flat, for normal maps).
 //
 // The engine shades with a diffuse colour, a specular colour and a power. Metallic-roughness maps
 // to these as: specular = mix(0.04, base, metallic), diffuse = base * (1 - metallic),
 // power = 2 / a^2 - 2 with a = roughness^2 (Walter et al. 2007 by way of Karis 2013). There are no
 // textures for metal and roughness: their mean becomes a factor.
 #include "gltf_raw.h"
+#include "../base/hash.h"
 #include "../base/jobs.h"
 #include "../base/log.h"
 #include <math.h>
@@ -24,6 +26,7 @@ typedef enum Use { USE_SRGB, USE_LINEAR, USE_MEAN, USE_COUNT } Use;
 
 typedef struct Decode {
     Bytes file;
+    u64 hash;           // of the file's bytes and the largest side
     u32 image, texture; // texture 0: USE_MEAN, pixels in scratch
     u32 width, height;
     TextureKind kind;
@@ -86,8 +89,14 @@ static bool plan_image(Builder *b, u32 image, char *why) {
         miss(b, image, reason);
         return true;
     }
+    u64 hash = hash_bytes(file.data, file.size, b->store->texture_side_cap);
     for (u32 use = 0; use < USE_COUNT; use++) {
         if (!b->used[use][image]) continue;
+        TextureKind kind = use == USE_SRGB ? TEXTURE_SRGB : TEXTURE_LINEAR;
+        if (use != USE_MEAN) {
+            b->texture_of[use][image] = store_find_texture(b->store, hash, kind);
+            if (b->texture_of[use][image]) continue;
+        }
         u64 pixel_count = (u64)width * height;
         if (pixel_count > b->pixels_left) {
             snprintf(why, ASSET_MESSAGE_CAP, "its images have more than %llu pixels",
@@ -96,8 +105,12 @@ static bool plan_image(Builder *b, u32 image, char *why) {
         }
         b->pixels_left -= pixel_count;
         Decode *d = &b->decodes[b->decode_count++];
-        *d = (Decode){.file = file, .image = image, .width = width, .height = height};
-        d->kind = use == USE_SRGB ? TEXTURE_SRGB : TEXTURE_LINEAR;
+        *d = (Decode){.file = file,
+                      .hash = hash,
+                      .image = image,
+                      .width = width,
+                      .height = height,
+                      .kind = kind};
         u32 cap = b->store->texture_side_cap;
         image_fit(&d->width, &d->height, use == USE_MEAN ? MIN(cap, MEAN_SIDE) : cap);
         if (use == USE_MEAN) {
@@ -146,6 +159,8 @@ static void take_results(Builder *b) {
             // The slot is reserved already: it shows the checker's pixels.
             b->store->textures[d->texture] = b->store->textures[ASSET_TEXTURE_CHECKER];
             if (d->kind == TEXTURE_LINEAR) b->texture_of[USE_LINEAR][d->image] = 0;
+        } else {
+            store_share_texture(b->store, d->texture, d->hash);
         }
     }
 }

@@ -19,6 +19,7 @@
 // First thing in the store's arena: what only this file needs to know.
 typedef struct StorePrivate {
     const char *texture_paths[ASSET_TEXTURES_MAX]; // NULL: not loaded by path
+    u64 texture_hashes[ASSET_TEXTURES_MAX];        // of the encoded bytes; 0: not to be shared
 } StorePrivate;
 
 static StorePrivate *store_private(const AssetStore *store) {
@@ -84,8 +85,10 @@ StoreMark store_mark(const AssetStore *store) {
 }
 
 void store_rewind(AssetStore *store, StoreMark mark) {
-    for (u32 i = mark.texture_count; i < store->texture_count; i++)
+    for (u32 i = mark.texture_count; i < store->texture_count; i++) {
         store_private(store)->texture_paths[i] = NULL;
+        store_private(store)->texture_hashes[i] = 0;
+    }
     store->mesh_count = mark.mesh_count;
     store->texture_count = mark.texture_count;
     store->model_count = mark.model_count;
@@ -200,6 +203,17 @@ u32 asset_add_mesh(AssetStore *store, const MeshVertex *vertices, u32 vertex_cou
 }
 
 // ---- textures ----
+
+u32 store_find_texture(const AssetStore *store, u64 hash, TextureKind kind) {
+    const u64 *hashes = store_private(store)->texture_hashes;
+    for (u32 i = 1; i < store->texture_count && hash; i++)
+        if (hashes[i] == hash && store->textures[i].kind == kind) return i;
+    return 0;
+}
+
+void store_share_texture(AssetStore *store, u32 texture, u64 hash) {
+    store_private(store)->texture_hashes[texture] = hash;
+}
 
 u32 store_reserve_texture(AssetStore *store, u32 width, u32 height, TextureKind kind,
                           bool with_mips, u8 **pixels) {

@@ -319,6 +319,17 @@ TEST(asset_gltf, images_are_shared_and_metal_is_averaged) {
     assert_int_equal(f->store.textures[m[1].normal_texture].kind, TEXTURE_LINEAR);
     assert_int_equal(f->store.textures[m[1].albedo_texture].kind, TEXTURE_SRGB);
     assert_int_equal(f->store.texture_count, 2 + 3);
+
+    // Another file with the same pictures brings none; with other pictures under their name, all.
+    u32 albedo = m[1].albedo_texture, normal = m[1].normal_texture;
+    m = model_of(f, fixture_load_text(f, json))->materials;
+    assert_int_equal(f->store.texture_count, 2 + 3);
+    assert_true(f->store.model_count == 3 && m[1].normal_texture == normal);
+    assert_true(m[1].albedo_texture == albedo && m[2].emissive_texture == albedo);
+    pixels[0]++;
+    assert_true(image_write_png(test_temp_path("a b.png"), pixels, 8, 8, 4));
+    m = model_of(f, fixture_load_text(f, json))->materials;
+    assert_true(m[1].albedo_texture >= 5 && m[1].normal_texture >= 5);
     fixture_close(f);
 }
 
@@ -361,6 +372,8 @@ TEST(asset_gltf, an_image_damaged_inside_is_a_checker) {
     const Texture *t = &f->store.textures[model->materials[0].albedo_texture];
     assert_ptr_equal(t->pixels, f->store.textures[ASSET_TEXTURE_CHECKER].pixels);
     assert_int_equal(f->id_count[LOG_ASSET_IMAGE], 1);
+    fixture_load_text(f, json); // nothing of it is shared
+    assert_int_equal(f->id_count[LOG_ASSET_IMAGE], 2);
     fixture_close(f);
 }
 

@@ -297,6 +297,43 @@ TEST(asset_images, mips_keep_the_mean_colour) {
         }
 }
 
+// One pixel of the next level, from the definition: colour as light, weighted by alpha.
+static void naive_half(const u8 *in, u32 width, u32 x, u32 y, bool srgb, f64 out[4]) {
+    f64 sum[3] = {0}, alpha = 0;
+    for (u32 k = 0; k < 4; k++) {
+        const u8 *p = in + ((y * 2 + k / 2) * width + x * 2 + k % 2) * 4;
+        for (u32 c = 0; c < 3; c++)
+            sum[c] += (srgb ? (f64)srgb_to_linear(p[c] / 255.0f) : p[c] / 255.0) * p[3];
+        alpha += p[3];
+    }
+    for (u32 c = 0; c < 3; c++) {
+        f64 value = alpha > 0 ? sum[c] / alpha : 0;
+        if (srgb) value = value <= 0.0031308 ? value * 12.92 : 1.055 * pow(value, 1 / 2.4) - 0.055;
+        out[c] = value * 255;
+    }
+    out[3] = alpha / 4;
+}
+
+TEST(asset_images, halves_agree_with_the_definition_and_in_place) {
+    enum { W = 64, H = 48 };
+    for (u32 round = 0; round < 4; round++) {
+        u8 *pixels = random_pixels(W, H, true), half[W * H];
+        for (u32 i = 0; i < W * H / 2 && round >= 2; i++) // the upper half is not opaque
+            pixels[i * 4 + 3] = (u8)(1 + random_u32(SEED, 9, i) % 255);
+        for (u32 i = 0; i < W * H; i++) // dark colours are where codes are close together
+            if (i % 3 == 0) pixels[i * 4] /= 16;
+        image_halve(pixels, W, H, (TextureKind)(round % 2), half);
+        for (u32 i = 0; i < W * H / 4; i++) {
+            f64 want[4];
+            naive_half(pixels, W, i % (W / 2), i / (W / 2), round % 2 == TEXTURE_SRGB, want);
+            for (u32 c = 0; c < 4; c++) ASSERT_NEAR(half[i * 4 + c], want[c], 0.55);
+        }
+        image_halve(pixels, W, H, (TextureKind)(round % 2), pixels);
+        assert_memory_equal(pixels, half, sizeof half);
+        free(pixels);
+    }
+}
+
 TEST(asset_images, srgb_is_averaged_as_light) {
     u8 pixels[4 * 4 + 4] = {0, 0, 0, 255, 255, 255, 255, 255, 0, 0, 0, 255, 255, 255, 255, 255};
     image_build_mips(pixels, 2, 2, TEXTURE_SRGB);
