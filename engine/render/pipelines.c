@@ -129,7 +129,7 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
 #define LOOP_ITERATIONS_SAFE 60000
 
 static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
-    u32 pixels = 8;
+    u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
     while (pixels > 1 && (u64)packet->counts.tile_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
         pixels /= 2;
     return pixels;
