@@ -48,7 +48,8 @@ static bool check_level(const char *path, const ToolCommon *common, Json *json,
     else if (diagnostics->count > 0)
         diagnostics_print(diagnostics, stdout);
     if (ok && !common->json && !common->quiet)
-        printf("%s: ok, %u entities\n", path, session.level.entity_count);
+        printf("%s: ok, %u %s\n", path, session.level.entity_count,
+               session.level.entity_count == 1 ? "entity" : "entities");
     session_destroy(&session);
     return true;
 }

@@ -44,7 +44,15 @@ bool session_create(Session *session, const SessionDesc *desc) {
     return ok;
 }
 
+static void session_forget_refused(Session *session) {
+    free(session->refused_stamps);
+    session->refused_files = NULL;
+    session->refused_stamps = NULL;
+    session->refused_count = 0;
+}
+
 static void session_unload(Session *session) {
+    session_forget_refused(session);
     if (!session->world) return;
     if (session->collision) collision_destroy(session->collision);
     asset_store_destroy(&session->assets);
@@ -171,7 +179,7 @@ void session_settle(Session *session) {
 
 static void session_report(Diagnostics *diagnostics, const char *file, const char *text) {
     Diagnostic *item = &diagnostics->items[diagnostics->count++];
-    *item = (Diagnostic){.is_error = true, .file = file, .line = 1, .column = 1, .text = text};
+    *item = (Diagnostic){.is_error = true, .file = file, .text = text};
     item->hint = item->source = "";
     item->length = 1;
     diagnostics->error_count++;
@@ -203,6 +211,7 @@ typedef struct LoadedLevel {
 // The arena and the diagnostics of the level to come.
 static Arena *session_begin_load(Session *session) {
     Arena *arena = &session->level_arena[1 - session->level_slot];
+    session_forget_refused(session); // the names are in this arena
     arena_reset(arena);
     session->diagnostics = ARENA_PUSH(arena, Diagnostics, 1);
     session->diagnostics->arena = arena;
@@ -277,7 +286,11 @@ static void session_adopt(Session *session, const LoadedLevel *fresh, u64 *file_
 bool session_load_below(Session *session, const char *root_path, const char *relative,
                         const PlayerPlace *place) {
     LoadedLevel fresh;
-    if (!session_load_fresh(session, root_path, relative, &fresh)) return false;
+    if (!session_load_fresh(session, root_path, relative, &fresh)) {
+        session->refused_files = fresh.info.files;
+        session->refused_count = fresh.info.file_count;
+        return false;
+    }
     u64 *stamps = session_stamp_files(session, &fresh.root, &fresh.info);
     session_adopt(session, &fresh, stamps, root_path, relative, place);
     return true;
@@ -286,8 +299,8 @@ bool session_load_below(Session *session, const char *root_path, const char *rel
 bool session_fill(Session *session, SessionFill fill, void *user) {
     session_begin_load(session);
     LoadedLevel fresh = {.root = {.fd = -1}};
-    bool ok = loaded_level_create(session, "(code)", &fresh) &&
-              fill(fresh.world, &fresh.assets, user);
+    bool ok =
+        loaded_level_create(session, "(code)", &fresh) && fill(fresh.world, &fresh.assets, user);
     if (!ok) {
         loaded_level_destroy(&fresh);
         return false;

@@ -46,6 +46,11 @@ struct Session {
     Diagnostics *diagnostics; // of the newest load; LevelInfo and this live in level_arena
     u64 *file_stamps;         // of level.files, for hot reload
     const u64 *stamps_before_load; // private: the same, taken just before a reload
+    // Of a reload that failed: its files (in level_arena) and their stamps. A file that a broken
+    // level names and the old one did not may be what mends it.
+    const char **refused_files;
+    u64 *refused_stamps;
+    u32 refused_count;
     // Has a walker: entity "spawn", else a new one at camera "main", else at the first camera, else
     // where it sees the whole level (flying).
     Entity player;

@@ -56,6 +56,10 @@ int session_poll_reload(Session *session) {
         if (now[i] == 0) now[i] = session->file_stamps[i];
         changed |= now[i] != session->file_stamps[i];
     }
+    for (u32 i = 0; i < session->refused_count && session->refused_stamps; i++) {
+        u64 stamp = file_root_stamp(&session->root, session->refused_files[i]);
+        changed |= stamp != 0 && stamp != session->refused_stamps[i];
+    }
     if (!changed) {
         free(now);
         return 0;
@@ -76,5 +80,9 @@ int session_poll_reload(Session *session) {
     // The broken state is known now: the next poll waits for the next edit.
     free(session->file_stamps);
     session->file_stamps = now;
+    session->refused_stamps = calloc(MAX(session->refused_count, 1), sizeof(u64));
+    LUZ_ASSERT(session->refused_stamps);
+    for (u32 i = 0; i < session->refused_count; i++)
+        session->refused_stamps[i] = file_root_stamp(&session->root, session->refused_files[i]);
     return -1;
 }

@@ -229,7 +229,7 @@ static u32 load(AssetStore *store, const FileRoot *root, const char *path, char 
     file_split_path(path, files.directory, sizeof files.directory, &name);
     if (strcmp(files.directory, ".") == 0) files.directory[0] = 0;
     if (!file_root_read(root, path, ASSET_FILE_SIZE_MAX, &store->scratch, &file)) {
-        snprintf(why, ASSET_MESSAGE_CAP, "cannot be read");
+        log_last_error(why, ASSET_MESSAGE_CAP);
         return 0;
     }
     files.bytes_left -= file.size;

@@ -279,12 +279,12 @@ u32 asset_load_texture(AssetStore *store, const FileRoot *root, const char *path
     Bytes file;
     u32 id = 0;
     if (!file_root_read(root, path, ASSET_FILE_SIZE_MAX, &store->scratch, &file))
-        snprintf(why, sizeof why, "cannot be read");
+        log_last_error(why, sizeof why);
     else
         id = add_encoded(store, file, kind, why);
     arena_rewind(&store->scratch, scratch_mark);
     if (!id) {
-        LOG(ASSET_IMAGE, "%s: %s; a checker takes its place", path, why[0] ? why : "no room");
+        LOG(ASSET_IMAGE, "%s: %s", path, why[0] ? why : "no room");
         return ASSET_TEXTURE_CHECKER;
     }
     paths[id] = arena_copy_string(&store->arena, path);

@@ -115,6 +115,11 @@ void file_root_close(FileRoot *root) {
 
 // ---- reading ----
 
+static const char *irregular(const struct stat *info) {
+    if (S_ISREG(info->st_mode)) return NULL;
+    return S_ISDIR(info->st_mode) ? "is a directory" : "is not a regular file";
+}
+
 // Reads an open file and closes it. `where` and `path` are for messages.
 static bool read_and_close(int fd, const char *where, const char *path, u64 max_size, Arena *arena,
                            Bytes *out) {
@@ -124,8 +129,8 @@ static bool read_and_close(int fd, const char *where, const char *path, u64 max_
     u64 size = 0;
     if (fstat(fd, &info) != 0) {
         problem = strerror(errno);
-    } else if (!S_ISREG(info.st_mode)) {
-        problem = S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file";
+    } else if ((problem = irregular(&info))) {
+        // nothing to read
     } else if ((u64)info.st_size > max_size || !arena_can_push(arena, (u64)info.st_size + 1, 16)) {
         problem = "is too large";
     } else {
@@ -160,6 +165,16 @@ bool file_root_read(const FileRoot *root, const char *path, u64 max_size, Arena 
     else
         LOG(FILE_OPEN, "'%s' below '%s': %s", path, root->path, strerror(errno));
     return false;
+}
+
+const char *file_root_problem(const FileRoot *root, const char *path) {
+    int fd = open_beneath(root->fd, path);
+    if (fd < 0 && (errno == EXDEV || errno == ELOOP)) return "leaves the data root";
+    if (fd < 0) return errno == ENOENT ? "is not there" : strerror(errno);
+    struct stat info;
+    const char *problem = fstat(fd, &info) == 0 ? irregular(&info) : strerror(errno);
+    close(fd);
+    return problem;
 }
 
 bool file_read(const char *path, u64 max_size, Arena *arena, Bytes *out) {

@@ -21,6 +21,9 @@ void file_root_close(FileRoot *root);
 // Reads a file below the root into the arena, with a terminating zero after `size` bytes (not
 // counted). False with a log line if it is absent, outside, not regular, or over max_size.
 bool file_root_read(const FileRoot *root, const char *path, u64 max_size, Arena *arena, Bytes *out);
+// NULL if path names a regular file below the root, else why it cannot be read: "leaves the data
+// root", "is a directory", ... No log line.
+const char *file_root_problem(const FileRoot *root, const char *path);
 // Modification stamp (ns) and size of a file below the root; 0 if absent.
 u64 file_root_stamp(const FileRoot *root, const char *path);
 

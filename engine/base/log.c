@@ -31,6 +31,7 @@ static const char *const log_level_names[] = {"debug", "info", "warning", "error
 #define LEVEL_UNSET -1
 static atomic_int log_level = LEVEL_UNSET; // LEVEL_UNSET: take LUZ_LOG at the first message
 static atomic_uint log_counts[LOG_ID_COUNT];
+static _Thread_local LogLevel log_hushed = LOG_SEVERITY_NONE;
 
 static pthread_mutex_t log_mutex = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
 // All below are guarded by log_mutex.
@@ -60,6 +61,8 @@ static LogLevel log_current_level(void) {
 
 void log_set_level(LogLevel level) { atomic_store(&log_level, (int)level); }
 
+void log_hush(LogLevel level) { log_hushed = level; }
+
 static const char *log_file_name(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
@@ -69,7 +72,9 @@ void log_write(LogId id, const char *file, int line, const char *format, ...) {
     LUZ_ASSERT((u32)id < LOG_ID_COUNT);
     LogLevel level = log_ids[id].level;
     atomic_fetch_add_explicit(&log_counts[id], 1, memory_order_relaxed);
-    bool print = level >= log_current_level();
+    LogLevel current = log_current_level();
+    bool hushed = level >= log_hushed;
+    bool print = level >= current && (!hushed || current == LOG_SEVERITY_DEBUG);
 
     char text[LOG_TEXT_CAP];
     va_list args;
@@ -78,7 +83,7 @@ void log_write(LogId id, const char *file, int line, const char *format, ...) {
     va_end(args);
 
     pthread_mutex_lock(&log_mutex);
-    if (level == LOG_SEVERITY_ERROR) memcpy(log_error_text, text, strlen(text) + 1);
+    if (level == LOG_SEVERITY_ERROR || hushed) memcpy(log_error_text, text, strlen(text) + 1);
     // One call of fprintf, so that lines of other programs on this stderr do not mix in.
     if (print)
         fprintf(stderr, "%s %s %s:%d: %s\n", log_level_names[level], log_ids[id].name,

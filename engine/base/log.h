@@ -30,7 +30,7 @@ typedef enum LogLevel {
     X(FILE_OUTSIDE_ROOT, ERROR, "path leaves the data root")                     \
     X(WORLD_LIMIT, ERROR, "a world limit is reached")                            \
     X(WORLD_LOAD, ERROR, "saved world is damaged")                               \
-    X(LEVEL_ERROR, ERROR, "level text has errors")                               \
+    X(LEVEL_ERROR, DEBUG, "level text has errors (whoever loads prints them)")   \
     X(LEVEL_WARNING, WARNING, "level text has doubtful places")                  \
     X(LEVEL_RELOADED, INFO, "level reloaded")                                    \
     X(ASSET_MODEL, ERROR, "model refused")                                       \
@@ -67,11 +67,15 @@ void log_write(LogId id, const char *file, int line, const char *format, ...) PR
 // Messages below this level are counted and not printed. Default info, or what the environment
 // says: LUZ_LOG=debug|info|warning|error|none.
 void log_set_level(LogLevel level);
+// For a caller that tells of the failure itself, with its place: until log_hush(LOG_SEVERITY_NONE),
+// messages of this thread of `level` and above are counted, observed and kept (log_last_error), and
+// not printed unless the level is debug.
+void log_hush(LogLevel level);
 // Messages seen with this id since start or the last log_reset_counts.
 u32 log_count(LogId id);
 void log_reset_counts(void);
 const char *log_id_name(LogId id);
-// Text of the newest message of level error ("" if none), copied into out.
+// Text of the newest message of level error, or that was hushed ("" if none), copied into out.
 void log_last_error(char *out, u64 out_cap);
 // An observer beside stderr (the debug panel, a test); NULL removes it. Called under the log's
 // lock, from the thread that logs; what it logs itself is printed, not observed.

@@ -12,6 +12,18 @@
 #define SOURCE_SHOWN_MAX 160 // bytes of a source line that are kept
 #define SOURCE_LEAD      60  // of them before the place, in a longer line
 
+// Bytes of the UTF-8 character at text, or 0 if it is none that a terminal should see: damaged, or
+// a control character.
+static u32 shown_size(const char *text, u64 left) {
+    u8 c = (u8)text[0];
+    if (c < 0x80) return c >= 32 && c != 127;
+    u32 size = c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : 2;
+    if (c < 0xC2 || c > 0xF4 || size > left) return 0;
+    for (u32 i = 1; i < size; i++)
+        if (((u8)text[i] & 0xC0) != 0x80) return 0;
+    return c == 0xC2 && (u8)text[1] < 0xA0 ? 0 : size;
+}
+
 // The text of a line, cut to a window around the column if it is long.
 static void take_source(Diagnostic *diagnostic, const LevelText *text, Arena *arena) {
     diagnostic->source = "";
@@ -29,10 +41,12 @@ static void take_source(Diagnostic *diagnostic, const LevelText *text, Arena *ar
     }
     u64 to = MIN(end, from + SOURCE_SHOWN_MAX);
     char *copy = ARENA_PUSH(arena, char, to - from + 1);
-    for (u64 i = from; i < to; i++) {
+    for (u64 i = from; i < to;) {
         // Tabs would move the caret away, control characters do harm to a terminal.
-        u8 c = (u8)text->data[i];
-        copy[i - from] = c < 32 || c == 127 ? ' ' : (char)c;
+        u32 size = shown_size(text->data + i, to - i);
+        if (size == 0) copy[i - from] = (u8)text->data[i] < 0x80 ? ' ' : '?';
+        if (size > 0) memcpy(copy + (i - from), text->data + i, size);
+        i += MAX(size, 1u);
     }
     diagnostic->source = copy;
     diagnostic->caret = (u32)(at - from);
@@ -101,13 +115,21 @@ void diagnostic_format(const Diagnostic *diagnostic, char *out, u64 out_cap) {
     u32 marked = MIN(diagnostic->length, source_size - caret);
     u32 lead = shown_width(diagnostic->source, caret);
     u32 width = MAX(shown_width(diagnostic->source + caret, marked), 1u);
+    char place[32] = "";
+    if (diagnostic->line)
+        snprintf(place, sizeof place, ":%u:%u", diagnostic->line, diagnostic->column);
+    const char *severity = diagnostic->is_error ? "error" : "warning";
+    if (!diagnostic->source[0]) {
+        snprintf(out, out_cap, "%s%s: %s: %s%s%s\n", diagnostic->file, place, severity,
+                 diagnostic->text, diagnostic->hint[0] ? "; " : "", diagnostic->hint);
+        return;
+    }
     char tildes[SOURCE_SHOWN_MAX + 1];
     width = MIN(width, SOURCE_SHOWN_MAX);
     memset(tildes, '~', width);
     tildes[0] = '^';
     tildes[width] = 0;
-    snprintf(out, out_cap, "%s:%u:%u: %s: %s\n  %s\n  %*s%s%s%s\n", diagnostic->file,
-             diagnostic->line, diagnostic->column, diagnostic->is_error ? "error" : "warning",
+    snprintf(out, out_cap, "%s%s: %s: %s\n  %s\n  %*s%s%s%s\n", diagnostic->file, place, severity,
              diagnostic->text, diagnostic->source, (int)lead, "", tildes,
              diagnostic->hint[0] ? " " : "", diagnostic->hint);
 }

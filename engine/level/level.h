@@ -23,7 +23,7 @@ extern "C" {
 typedef struct Diagnostic {
     bool is_error; // else a warning
     const char *file;
-    u32 line, column;   // 1-based; column counts bytes
+    u32 line, column;   // 1-based; column counts bytes; 0: the file as a whole
     const char *text;   // "unknown key 'intensty'"
     const char *hint;   // "did you mean 'intensity'?" or ""
     const char *source; // the line's text; of a very long line the part around the place
@@ -54,7 +54,8 @@ typedef struct LevelInfo {
 bool level_load(const FileRoot *root, const char *path, World *world, AssetStore *store,
                 Arena *arena, LevelInfo *info, Diagnostics *diagnostics);
 
-// "file:line:column: error: text\n  source\n  ^~~~ hint\n" of one diagnostic into out.
+// "file:line:column: error: text\n  source\n  ^~~~ hint\n" of one diagnostic into out; without a
+// source line "file:line:column: error: text; hint\n", about a whole file "file: error: text\n".
 void diagnostic_format(const Diagnostic *diagnostic, char *out, u64 out_cap);
 // All of them to a stream, with a closing line "3 errors, 1 warning".
 void diagnostics_print(const Diagnostics *diagnostics, void *file_stream);

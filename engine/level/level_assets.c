@@ -100,11 +100,13 @@ static void read_shape_kind(LevelReader *reader, const TomlNode *node, ShapeDesc
 static u32 load_model_file(LevelReader *reader, const TomlNode *node) {
     const char *path;
     if (!level_read_path(reader, node, "model.file", &path)) return 0;
+    log_hush(LOG_SEVERITY_ERROR);
     u32 id = asset_load_model(reader->store, reader->root, path);
+    log_hush(LOG_SEVERITY_NONE);
     if (id) return id;
     char reason[256];
     log_last_error(reason, sizeof reason);
-    level_error(reader, node->place, NULL, "model.file: '%s' is refused: %s", path, reason);
+    level_error(reader, node->place, NULL, "model.file: %s", reason);
     return 0;
 }
 

@@ -168,11 +168,13 @@ static void spawn_views(LevelReader *reader, const Model *model) {
 }
 
 void level_read_gltf(LevelReader *reader, const char *path) {
+    log_hush(LOG_SEVERITY_ERROR);
     u32 id = asset_load_model(reader->store, reader->root, path);
+    log_hush(LOG_SEVERITY_NONE);
     if (id == 0) {
         char reason[256];
         log_last_error(reason, sizeof reason);
-        level_error(reader, (TomlPlace){1, 1, 1}, NULL, "the model is refused: %s", reason);
+        level_error(reader, LEVEL_WHOLE_FILE, NULL, "the model is refused: %s", reason);
         return;
     }
     const Model *model = &reader->store->models[id];
@@ -195,5 +197,5 @@ void level_read_gltf(LevelReader *reader, const char *path) {
         spawn_light(reader, &model->lights[i], &has_shadow);
     if (model->light_count == 0) spawn_sun(reader);
     spawn_views(reader, model);
-    level_spawn_all_drawables(reader, (TomlPlace){1, 1, 1});
+    level_spawn_all_drawables(reader, LEVEL_WHOLE_FILE);
 }

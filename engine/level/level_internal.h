@@ -236,6 +236,9 @@ void *level_grow(Arena *arena, void *array, u32 count, u32 *cap, u64 element_siz
 
 // --- Diagnostics (diagnostics.c) ---
 
+// The place of what is wrong with the file as a whole.
+#define LEVEL_WHOLE_FILE ((TomlPlace){0, 0, 0})
+
 // hint may be NULL.
 void level_error(LevelReader *reader, TomlPlace place, const char *hint, const char *format, ...)
     PRINTF_LIKE(4, 5);

@@ -193,14 +193,17 @@ static void hash_assets(LevelInfo *info, const AssetStore *store) {
 static bool read_file(LevelReader *reader, const char *path) {
     Bytes bytes;
     u64 max_size = MIN(LEVEL_TEXT_SIZE_MAX, reader->scratch.cap / SCRATCH_PER_BYTE);
-    if (file_root_read(reader->root, path, max_size, &reader->scratch, &bytes)) {
+    log_hush(LOG_SEVERITY_ERROR);
+    bool ok = file_root_read(reader->root, path, max_size, &reader->scratch, &bytes);
+    log_hush(LOG_SEVERITY_NONE);
+    if (ok) {
         reader->text = (LevelText){.data = bytes.data, .size = bytes.size};
         list_lines(&reader->text, &reader->scratch);
         return true;
     }
     char reason[256];
     log_last_error(reason, sizeof reason);
-    level_error(reader, (TomlPlace){1, 1, 1}, NULL, "the level cannot be read: %s", reason);
+    level_error(reader, LEVEL_WHOLE_FILE, NULL, "the level cannot be read: %s", reason);
     return false;
 }
 
@@ -227,7 +230,7 @@ bool level_load(const FileRoot *root, const char *path, World *world, AssetStore
     diagnostics->arena = arena;
     diagnostics->count = diagnostics->error_count = diagnostics->warning_count = 0;
     if (!create_scratch(&reader.scratch)) {
-        level_error(&reader, (TomlPlace){1, 1, 1}, NULL, "no memory to read the level");
+        level_error(&reader, LEVEL_WHOLE_FILE, NULL, "no memory to read the level");
         return false;
     }
     level_keys_create(&reader.keys, world, &reader.scratch);

@@ -10,6 +10,7 @@
 // entities with consecutive indices, so part.material is added to the index of
 // model.first_material.
 #include "level_internal.h"
+#include "../base/log.h"
 #include "../base/hash.h"
 #include <stdio.h>
 #include <string.h>
@@ -259,10 +260,13 @@ static void settle_references(LevelReader *reader) {
 static u32 load_texture(LevelReader *reader, LevelTexture *texture) {
     if (texture->is_loaded) return texture->id;
     texture->is_loaded = true;
+    log_hush(LOG_SEVERITY_WARNING);
     texture->id = asset_load_texture(reader->store, reader->root, texture->path, texture->kind);
-    if (texture->id <= 1) // 1 is the checker for damaged images
-        level_error(reader, texture->place, NULL, "%s: '%s' is damaged or not an image",
-                    texture->label, texture->path);
+    log_hush(LOG_SEVERITY_NONE);
+    if (texture->id > 1) return texture->id; // 1 is the checker for damaged images
+    char reason[256];
+    log_last_error(reason, sizeof reason);
+    level_error(reader, texture->place, NULL, "%s: %s", texture->label, reason);
     return texture->id;
 }
 

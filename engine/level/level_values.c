@@ -165,9 +165,10 @@ bool level_read_path(LevelReader *reader, const TomlNode *node, const char *labe
         return false;
     }
     level_add_file(reader, path); // also if it is missing: hot reload waits for it
-    if (file_root_stamp(reader->root, path) == 0) {
-        level_error(reader, node->place, NULL, "%s: file '%s' not found below '%s'", label, path,
-                    reader->root->path);
+    const char *problem = file_root_problem(reader->root, path);
+    if (problem) {
+        level_error(reader, node->place, NULL, "%s: '%s' below '%s' %s", label, path,
+                    reader->root->path, problem);
         return false;
     }
     *out = path;

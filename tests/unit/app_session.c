@@ -108,6 +108,26 @@ TEST(app_session, a_broken_edit_keeps_the_old_level) {
 }
 
 // Two sessions, and a packet drawn in between: the same worlds.
+// A level is saved before the model that it names is exported.
+TEST(app_session, a_file_that_comes_later_mends_the_level) {
+    const char *path = test_temp_path("a.toml");
+    save(path, "");
+    Session session;
+    open_session(&session, path);
+    save(path, "[[material]]\nname = \"paint\"\nalbedo_texture = \"paint.png\"\n");
+    log_set_level(LOG_SEVERITY_NONE);
+    assert_int_equal(session_poll_reload(&session), -1);
+    assert_int_equal(session_poll_reload(&session), 0);
+    assert_true(file_write(test_temp_path("paint.png"), "half", 4));
+    assert_int_equal(session_poll_reload(&session), -1);
+    const u8 pixel[4] = {255, 128, 0, 255};
+    assert_true(image_write_png(test_temp_path("paint.png"), pixel, 1, 1, 4));
+    assert_int_equal(session_poll_reload(&session), 1);
+    assert_int_not_equal(world_find(session.world, "paint"), ENTITY_NONE);
+    assert_int_equal(session_poll_reload(&session), 0);
+    session_destroy(&session);
+}
+
 TEST(app_session, looking_changes_nothing) {
     const char *path = test_temp_path("a.toml");
     save(path, "[[entity]]\nname = \"l\"\nlight = {}\norbit = {}\nflicker = {}\n");

@@ -52,6 +52,22 @@ TEST(log, keeps_the_last_error) {
     assert_int_equal(strlen(text), sizeof text - 1);
 }
 
+TEST(log, hushed_messages_are_kept) {
+    char text[64];
+    log_set_level(LOG_SEVERITY_NONE);
+    log_reset_counts();
+    log_hush(LOG_SEVERITY_WARNING);
+    LOG(ASSET_IMAGE, "half a picture");
+    LOG(NOTE, "not kept");
+    log_hush(LOG_SEVERITY_NONE);
+    log_last_error(text, sizeof text);
+    assert_string_equal(text, "half a picture");
+    assert_int_equal(log_count(LOG_ASSET_IMAGE), 1);
+    LOG(ASSET_IMAGE, "only a warning");
+    log_last_error(text, sizeof text);
+    assert_string_equal(text, "half a picture");
+}
+
 typedef struct Seen {
     u32 count;
     LogId id;

@@ -1,6 +1,8 @@
 // level_errors.c: levels with mistakes: each is found, at its place, in one run.
 #include "level_common.h"
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct Mistake {
@@ -71,7 +73,7 @@ static const char many_mistakes[] =
              /* 57 */ "name = \"c\"\n"
              /* 58 */ "repeat.ring = { count = 3 }\n"
              /* 59 */ "vary = { light.color = { chose = [] }, orbit.phase = { min = 9, max = 1 } "
-                      "}\n"
+             "}\n"
              /* 60 */ "position = [0, 0, 0]\n"
              /* 61 */ "walker = true\n"
              /* 62 */ "environment = {}\n"
@@ -90,11 +92,11 @@ static const Mistake mistakes[] = {
     {"", 12, 9, "there is no shape 'shpere'", "did you mean 'sphere'?"},
     {"", 14, 8, "a model is already named 'ball' (line 11)", NULL},
     {"", 18, 8, "model.file: '../secret.glb' leaves the data root", "data root"},
-    {"", 21, 8, "model.file: file 'models/none.glb' not found", NULL},
+    {"", 21, 8, "model.file: 'models/none.glb' below ", NULL},
     {"", 22, 1, "neither file nor shape", "write"},
     {"", 24, 1, "the material has no name", NULL},
     {"", 25, 10, "material.albedo: expected 3 numbers, got 2", NULL},
-    {"", 28, 18, "material.albedo_texture: file 'none.png' not found", NULL},
+    {"", 28, 18, "material.albedo_texture: 'none.png' below ", NULL},
     {"", 29, 16, "material.albedo: 2 is out of range 0 to 1", NULL},
     {"", 30, 16, "material.double_sided: expected true or false, got an integer", NULL},
     {"", 36, 10, "no entity of this prefab is named 'rot'", "did you mean 'root'?"},
@@ -300,6 +302,29 @@ TEST(level, material_limit_is_named) {
     test_level_close(&level);
 }
 
+// What is wrong with a whole file has no line to show; a damaged line does no harm to a terminal.
+TEST(level, diagnostics_show_only_what_there_is) {
+    char text[512];
+    TestLevel level;
+    test_level_load_good(&level, "");
+    assert_false(level_load(&level.root, "none.toml", level.world, &level.store, &level.arena,
+                            &level.info, level.diagnostics));
+    diagnostic_format(&level.diagnostics->items[0], text, sizeof text);
+    assert_non_null(strstr(text, "none.toml: error: the level cannot be read: "));
+    assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
+    test_level_close(&level);
+
+    static const char bytes[] = "x = '\xc3\xa4\xc2\x9b\xe2\x82' \x1b[2J\n";
+    test_level_load_bytes(&level, "raw.toml", bytes, sizeof bytes - 1);
+    assert_false(level.is_good);
+    assert_string_equal(level.diagnostics->items[0].source, "x = '\xc3\xa4?"
+                                                            "?"
+                                                            "?"
+                                                            "?"
+                                                            "'  [2J");
+    test_level_close(&level);
+}
+
 TEST(level, absent_files_and_paths_that_climb) {
     TestLevel level;
     test_level_load_good(&level, "");
@@ -323,6 +348,12 @@ TEST(level, absent_files_and_paths_that_climb) {
         test_level_load(&level, text);
         assert_false(level.is_good);
         assert_int_equal(level.diagnostics->items[0].line, 3);
+        assert_non_null(strstr(level.diagnostics->items[0].text, "leaves the data root"));
         test_level_close(&level);
     }
+    assert_int_equal(mkdir(test_temp_path("folder"), 0700), 0);
+    test_level_load(&level, "[[model]]\nname = \"m\"\nfile = \"folder\"\n");
+    assert_int_equal(level.diagnostics->error_count, 1);
+    assert_non_null(strstr(level.diagnostics->items[0].text, "is a directory"));
+    test_level_close(&level);
 }

@@ -84,7 +84,7 @@ TEST(level_write, textures_keep_their_paths) {
     assert_true(file_write(test_temp_path("bad.png"), "no image", 8));
     test_level_load(&level, "[[material]]\nname = \"m\"\nalbedo_texture = \"bad.png\"\n");
     assert_int_equal(level.diagnostics->error_count, 1);
-    assert_non_null(strstr(level.diagnostics->items[0].text, "damaged or not an image"));
+    assert_non_null(strstr(level.diagnostics->items[0].text, "bad.png: not a PNG"));
     assert_int_equal(level.diagnostics->items[0].column, 18);
     test_level_close(&level);
 }
