@@ -10,9 +10,11 @@
 
 int luz_run(const LuzDesc *desc) {
     Luz *luz = luz_open(desc);
-    if (!luz) return 1;
+    if (!luz) return APP_FAILED;
     int code = desc->headless ? APP_NO_WINDOW : app_run_window(luz);
     if (code == APP_NO_WINDOW) code = app_run_headless(luz);
+    app_record_stop(luz);
+    if (code == APP_OK && luz->record_lost) code = APP_ENVIRONMENT;
     luz_close(luz);
     return code;
 }

@@ -112,7 +112,8 @@ typedef AppOptions LuzOptions;
 #define LUZ_GO_ON OPTIONS_GO_ON
 
 // Everything: opens, runs in a window (or headless), closes. Returns the program's exit code:
-// 0 well, 1 failed (messages on stderr).
+// 0 well, 1 failed, 2 wrong command line, 3 no device or files that cannot be written (messages on
+// stderr).
 int luz_run(const LuzDesc *desc);
 // Reads the common options (--help lists them) over what is in the desc. LUZ_GO_ON, or the exit
 // code of a program that is to end now. `options` must live as long as the desc.

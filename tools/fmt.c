@@ -4,6 +4,7 @@
 #include "../engine/base/file.h"
 #include "../engine/level/level.h"
 #include "../engine/level/level_format.h"
+#include "json.h"
 #include "tool.h"
 #include <stdio.h>
 #include <string.h>
@@ -14,8 +15,10 @@ typedef struct FmtOptions {
     bool check, print;
 } FmtOptions;
 
+// *changed: the text is not in form yet.
 static int fmt_file(const char *path, const FmtOptions *options, const ToolCommon *common,
-                    Arena *arena) {
+                    Arena *arena, bool *changed) {
+    *changed = false;
     Bytes text;
     const char *formatted;
     if (!file_read(path, LEVEL_TEXT_SIZE_MAX, arena, &text)) return TOOL_DIFFERENT;
@@ -27,10 +30,11 @@ static int fmt_file(const char *path, const FmtOptions *options, const ToolCommo
         return TOOL_OK;
     }
     u64 size = strlen(formatted);
-    if (size == text.size && memcmp(formatted, text.data, size) == 0) return TOOL_OK;
+    *changed = size != text.size || memcmp(formatted, text.data, size) != 0;
+    if (!*changed) return TOOL_OK;
     if (options->check) return tool_fail(TOOL_DIFFERENT, "fmt", "'%s' is not formatted", path);
     if (!file_write(path, formatted, size)) return TOOL_ENVIRONMENT;
-    if (!common->quiet) printf("formatted %s\n", path);
+    if (!common->quiet && !common->json) printf("formatted %s\n", path);
     return TOOL_OK;
 }
 
@@ -54,18 +58,34 @@ static int fmt_run(int argc, char **argv) {
     ToolList positional;
     ToolParse parsed = tool_parse(&spec, argc, argv, &common, &positional);
     if (parsed != PARSE_RUN) return parsed == PARSE_HELP ? TOOL_OK : TOOL_USAGE;
+    if (o.print && (o.check || common.json))
+        return tool_fail(TOOL_USAGE, "fmt", "--print and --%s contradict each other",
+                         o.check ? "check" : "json");
     tool_begin(&common);
+    Json json = json_begin();
+    json_open_object(&json, NULL);
+    json_open_array(&json, "files");
     int result = TOOL_ENVIRONMENT;
     Arena arena;
     if (arena_create(&arena, "fmt", FMT_ARENA_CAP)) {
         result = TOOL_OK;
         for (u32 i = 0; i < positional.count; i++) {
-            int one = fmt_file(positional.items[i], &o, &common, &arena);
+            bool changed;
+            int one = fmt_file(positional.items[i], &o, &common, &arena, &changed);
             result = MAX(result, one);
+            json_open_flat_object(&json, NULL);
+            json_text(&json, "file", positional.items[i]);
+            json_bool(&json, "ok", one == TOOL_OK);
+            json_bool(&json, "changed", changed);
+            json_close(&json);
             arena_reset(&arena);
         }
         arena_destroy(&arena);
     }
+    json_close(&json);
+    json_close(&json);
+    if (common.json) json_print(&json);
+    json_free(&json);
     tool_end();
     return result;
 }

@@ -38,6 +38,18 @@ static char *import_text(const char *model, const World *world, const AssetStore
                         model, level);
 }
 
+// Where the level was written, or its text.
+static void print_json(const char *model, const char *out, const char *text) {
+    Json json = json_begin();
+    json_open_object(&json, NULL);
+    json_text(&json, "model", model);
+    if (out) json_text(&json, "level", out);
+    if (text) json_text(&json, "text", text);
+    json_close(&json);
+    json_print(&json);
+    json_free(&json);
+}
+
 static int import_model(const char *path, const char *out, bool force, const ToolCommon *common,
                         Arena *arena) {
     char root_path[1024], relative[1024];
@@ -63,14 +75,19 @@ static int import_model(const char *path, const char *out, bool force, const Too
         result = TOOL_DIFFERENT;
     } else {
         const char *text = import_text(relative, world, &store, arena);
-        if (!out)
+        if (!out && common->json)
+            print_json(path, NULL, text);
+        else if (!out)
             fputs(text, stdout);
         else if (file_exists(out) && !force)
             result =
                 tool_fail(TOOL_ENVIRONMENT, "import", "'%s' is there already; use --force", out);
         else
             result = file_write(out, text, strlen(text)) ? TOOL_OK : TOOL_ENVIRONMENT;
-        if (result == TOOL_OK && out && !common->quiet) printf("wrote %s\n", out);
+        if (result == TOOL_OK && out && common->json)
+            print_json(path, out, NULL);
+        else if (result == TOOL_OK && out && !common->quiet)
+            printf("wrote %s\n", out);
     }
     world_destroy(world);
     asset_store_destroy(&store);

@@ -4,6 +4,7 @@
 #include "../engine/base/jobs.h"
 #include "../engine/base/log.h"
 #include "tool.h"
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,7 @@ void tool_begin(const ToolCommon *common) {
 
 void tool_end(void) { jobs_stop(); }
 
-int main(int argc, char **argv) {
+static int run(int argc, char **argv) {
     if (argc < 2) {
         print_help();
         return TOOL_USAGE;
@@ -63,4 +64,11 @@ int main(int argc, char **argv) {
     if (near)
         return tool_fail(TOOL_USAGE, "", "unknown command '%s'; did you mean '%s'?", name, near);
     return tool_fail(TOOL_USAGE, "", "unknown command '%s'; see `luz --help`", name);
+}
+
+int main(int argc, char **argv) {
+    int code = run(argc, argv);
+    // A result that nobody got is no success.
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    return tool_fail(TOOL_ENVIRONMENT, "", "the output cannot be written: %s", strerror(errno));
 }

@@ -109,6 +109,7 @@ struct App {
     // Recording and replay.
     RecordingWriter *writer;
     char record_path[512];
+    bool record_lost; // a recording could not be written
     bool has_replay;
     Arena replay_arena;
     Recording replay;
@@ -198,8 +199,13 @@ const char *const *app_key_help(void);
 
 // --- Shells ---
 
-// Exit codes: 0 well, 1 failed. APP_NO_WINDOW: there is no display, nothing was done.
-#define APP_NO_WINDOW (-1)
+// Exit codes of the program. APP_NO_WINDOW: there is no display, nothing was done.
+enum {
+    APP_OK = 0,
+    APP_FAILED = 1,      // a level with errors, a replay that differs, validation messages
+    APP_ENVIRONMENT = 3, // no device, files that cannot be written
+    APP_NO_WINDOW = -1
+};
 int app_run_window(App *app);
 int app_run_headless(App *app);
 

@@ -87,6 +87,7 @@ void app_record_stop(App *app) {
     if (!app->writer) return;
     bool ok = recording_writer_finish(app->writer, app->record_path);
     app->writer = NULL;
+    app->record_lost |= !ok;
     app_say(app, ok ? "wrote %s" : "could not write %s", app->record_path);
 }
 

@@ -36,10 +36,10 @@ static int headless_replay(App *app) {
     f64 seconds = (clock_now_ms() - start) / 1000.0;
     if (app->replay_differences > 0) {
         printf("replay: %u of %u ticks differ\n", app->replay_differences, app->replay_tick);
-        return 1;
+        return APP_FAILED;
     }
     printf("replay: %u ticks in %.1f s, every one as recorded\n", app->replay_tick, seconds);
-    return 0;
+    return APP_OK;
 }
 
 // A camera's name may hold anything; a file's name only what every system takes.
@@ -62,7 +62,8 @@ typedef struct TourRow {
     u64 hash;
 } TourRow;
 
-static bool tour_picture(App *app, u32 index, const char *camera, bool write, TourRow *row) {
+// *write becomes false if the picture cannot be written. False: nothing was drawn.
+static bool tour_picture(App *app, u32 index, const char *camera, bool *write, TourRow *row) {
     RenderImage image;
     f64 start = clock_now_ms();
     if (!app_picture(app, camera, app->desc.width_px, app->desc.height_px, &image)) return false;
@@ -71,10 +72,11 @@ static bool tour_picture(App *app, u32 index, const char *camera, bool write, To
                      .ms = (f32)(clock_now_ms() - start),
                      .hash = image.hash};
     snprintf(row->name, sizeof row->name, "%s", camera ? camera : "player");
-    if (!write) return true;
+    if (!*write) return true;
     char path[1024];
     picture_path(app, index, row->name, path, sizeof path);
-    return image_write_png(path, image.rgba, image.width_px, image.height_px, 4);
+    *write = image_write_png(path, image.rgba, image.width_px, image.height_px, 4);
+    return true;
 }
 
 // Shaders are compiled at their first use: that time belongs to no picture.
@@ -107,7 +109,6 @@ static int headless_tour(App *app) {
     char directory[600];
     snprintf(directory, sizeof directory, "%s/tour", app->desc.out_directory);
     bool write = file_make_directories(directory);
-    if (!write) LOG(FILE_WRITE, "%s cannot be written; the tour only shows its numbers", directory);
     warm_up(app, names[0]);
     TourRow rows[APP_CAMERAS_CAP];
     u32 done = 0;
@@ -116,23 +117,27 @@ static int headless_tour(App *app) {
         show_progress(done, count, names[done] ? names[done] : "player");
         if (done > 0)
             for (u32 i = 0; i < TICKS_BETWEEN_PICTURES; i++) app_tick(app, (Input){0});
-        ok = tour_picture(app, done, names[done], write, &rows[done]);
+        ok = tour_picture(app, done, names[done], &write, &rows[done]);
         app_write_status(app, app->desc.width_px, app->desc.height_px);
     }
     if (ok) show_progress(count, count, "done");
     print_tour(rows, ok ? done : done - 1, write, app->desc.out_directory);
     u32 messages = gpu_validation_message_count(app->gpu);
     if (messages > 0) fprintf(stderr, "luz: %u messages of the validation layer\n", messages);
-    return ok && messages == 0 ? 0 : 1;
+    if (!write)
+        fprintf(stderr, "luz: pictures cannot be written to %s; --out names another directory\n",
+                directory);
+    if (!ok || messages > 0) return APP_FAILED;
+    return write ? APP_OK : APP_ENVIRONMENT;
 }
 
 int app_run_headless(App *app) {
     app->desc.headless = true;
-    if (!app->session.world) return 1;
+    if (!app->session.world) return APP_FAILED;
     if (app->has_replay) return headless_replay(app);
     u32 ticks = (u32)(app->desc.seconds * TICK_RATE);
     for (u32 i = 0; i < ticks; i++) app_tick(app, (Input){0});
-    if (!app->gpu && !app_open_device(app, NULL)) return 1;
+    if (!app->gpu && !app_open_device(app, NULL)) return APP_ENVIRONMENT;
     if (!app_upload_assets(app)) LOG(RENDER_LIMIT, "not everything fits into the device's memory");
     return headless_tour(app);
 }

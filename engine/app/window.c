@@ -345,7 +345,7 @@ static void frame(Window *window) {
     bool drawn = draw(window);
     if (gpu_is_lost(app->gpu) || window->resize_failures > RESIZE_FAILURES_MAX) {
         window->resize_failures = 0;
-        if (!renew_device(window)) window->quit = true, window->exit_code = 1;
+        if (!renew_device(window)) window->quit = true, window->exit_code = APP_ENVIRONMENT;
         return;
     }
     f64 spent = clock_now_ms() - window->frame_start_ms;
@@ -389,7 +389,7 @@ static int report_end(const Window *window) {
                app->replay_differences ? "not all as recorded" : "every one as recorded");
     u32 messages = app->gpu ? gpu_validation_message_count(app->gpu) : 0;
     if (messages > 0) fprintf(stderr, "luz: %u messages of the validation layer\n", messages);
-    return messages > 0 || app->replay_differences > 0 ? 1 : window->exit_code;
+    return messages > 0 || app->replay_differences > 0 ? APP_FAILED : window->exit_code;
 }
 
 int app_run_window(App *app) {
@@ -411,7 +411,7 @@ int app_run_window(App *app) {
     }
     while (ok && !window->quit && !glfwWindowShouldClose(window->handle) && !time_is_up(window))
         frame(window);
-    int code = ok ? report_end(window) : 1;
+    int code = ok ? report_end(window) : APP_ENVIRONMENT;
     app_close_device(app); // the surface goes before its window
     debug_ui_destroy(window->ui);
     if (window->handle) glfwDestroyWindow(window->handle);

@@ -273,7 +273,10 @@ bool file_write(const char *path, const void *data, u64 size) {
     } else {
         ok = write_by_rename(target ? target : path, exists ? &old : NULL, data, size);
     }
-    if (!ok) LOG(FILE_WRITE, "'%s': %s", path, strerror(errno));
+    if (!ok && errno == ENOENT)
+        LOG(FILE_WRITE, "'%s': its directory is not there", path);
+    else if (!ok)
+        LOG(FILE_WRITE, "'%s': %s", path, strerror(errno));
     free(target);
     return ok;
 }

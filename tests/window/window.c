@@ -60,7 +60,7 @@ TEST_WINDOW(window, no_display) {
     assert_int_equal(run("! grep -q GPU_VALIDATION %s/log", out), 0);
 }
 
-// Nothing can be written: the game goes on without.
+// Nothing can be written: the tour goes on without, and the exit status says so.
 TEST_WINDOW(window, read_only_out) {
     char demo[600];
     demo_path(demo, sizeof demo);
@@ -69,8 +69,25 @@ TEST_WINDOW(window, read_only_out) {
     assert_int_equal(run("%s --headless --level tests/window/room.toml --size 160x90 "
                          "--out /proc/nowhere > %s/log 2>&1",
                          demo, work),
-                     0);
+                     3);
     assert_int_equal(run("grep -q FILE_WRITE %s/log", work), 0);
+    assert_int_equal(run("grep -q 'main .* 12 ' %s/log", work), 0);
+    assert_int_equal(run("%s --headless --level tests/window/room.toml --size 64x64 --out %s "
+                         "--record /proc/nowhere/r.luzr > %s/log 2>&1",
+                         demo, work, work),
+                     3);
+}
+
+TEST(window, no_device) {
+    char demo[600];
+    demo_path(demo, sizeof demo);
+    if (access(demo, X_OK) != 0) TEST_SKIP("%s is not built", demo);
+    const char *work = test_temp_dir();
+    assert_int_equal(run("env VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent %s "
+                         "--headless --level tests/window/room.toml --out %s > %s/log 2>&1",
+                         demo, work, work),
+                     3);
+    assert_int_equal(run("grep -q 'GPU_NONE.*install' %s/log", work), 0);
 }
 
 // A mistake on the command line: a suggestion and exit status 2.
