@@ -233,9 +233,12 @@ static void name_difference(const RecordingCheck *check, const World *world,
     u32 pick = first[0] != UINT32_MAX ? 0 : 1;
     if (differing)
         name_column(check, world, first[pick], first_sum[pick], differing - 1, out);
+    else if (world->seed != check->recording->info.seed)
+        say(out, "all columns are equal, and the seed is %llu, recorded %llu",
+            (unsigned long long)world->seed, (unsigned long long)check->recording->info.seed);
     else
-        say(out, "all columns are equal; entities, point lists, seed or columns unknown to one "
-                 "of the builds differ");
+        say(out, "all columns are equal; entities, point lists or columns unknown to one of the "
+                 "builds differ");
 }
 
 bool recording_check_tick(RecordingCheck *check, u32 tick, const World *world,

@@ -190,6 +190,14 @@ TEST(capture_recording, names_what_is_outside_the_tables) {
     assert_non_null(strstr(d.text, "all columns are equal"));
 }
 
+static void change_seed(CaptureWorld *fixture) { fixture->world->seed = 12; }
+
+TEST(capture_recording, names_another_seed) {
+    RecordingDifference d = difference_of(30, 0, change_seed);
+    assert_string_equal(d.text,
+                        "at the start: all columns are equal, and the seed is 12, recorded 11");
+}
+
 // Any one row of any size of column, any two values.
 TEST(capture_recording, sums_find_any_row) {
     for (u32 n = 1; n <= 300; n += 13) {

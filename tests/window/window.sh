@@ -95,6 +95,9 @@ wait_for 10 "an error on the screen" has_error
 field_is lights $((lights + 8)) || fail "a broken edit changed the level"
 tick=$(field tick)
 wait_for 10 "the old level to go on" ticking "$tick"
+rm "$level"
+tick=$(field tick)
+wait_for 10 "the old level to go on without its file" ticking $((tick + 30))
 cp "$work/good.toml" "$level"
 wait_for 10 "the error to go" field_is errors ""
 
