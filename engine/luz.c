@@ -3,7 +3,7 @@
 // Data in: a LuzDesc. Data out: a program that runs, or a Luz to step by hand. Called by: programs.
 // Does not: hold any state of its own.
 #include "luz.h"
-#include "level/level_internal.h"
+#include "level/level.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -69,8 +69,11 @@ const char *level_write(const World *world, const AssetStore *store, Arena *aren
 // "data" (levels of the project), else the file's own directory. relative gets the path below it.
 bool level_find_root(const char *path, char *root, u64 root_cap, char *relative, u64 relative_cap);
 
+// Spawns a model's entity and, right behind it, its materials' (consecutive indices, see the model
+// component). name NULL = none.
+Entity level_spawn_model(World *world, const AssetStore *store, u32 model, const char *name);
 // Adds drawable rows for an entity with an instance row (its model set), as level_load does.
-// material_of_model: see level_spawn.c; for games that spawn instances while running.
+// For games that spawn instances while running.
 void level_spawn_drawables(World *world, const AssetStore *store, Entity entity);
 
 #ifdef __cplusplus

@@ -303,8 +303,6 @@ LevelValue level_draw_vary(const LevelVary *vary, u64 seed, u64 stream, u32 copy
 // [[model]] and [[material]] straight into the world.
 void level_read_models(LevelReader *reader, const TomlNode *list);
 void level_read_materials(LevelReader *reader, const TomlNode *list);
-// The model's entity and those of its materials, named "name/material".
-Entity level_spawn_model(World *world, const AssetStore *store, u32 model, const char *name);
 void level_fill_material(MaterialTable *materials, u32 row, const ModelMaterial *material);
 const char *level_material_name(const Model *model, u32 index, const char *model_name, char *out,
                                 u64 out_cap);
