@@ -4,6 +4,7 @@
 #include "../engine/capture/capture.h"
 #include "headless.h"
 #include "script.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -96,12 +97,11 @@ static int record_level(Record *record, Arena *arena) {
     if (strlen(record->level) >= sizeof((RecordingInfo *)0)->level)
         return tool_fail(TOOL_USAGE, "record", "the level's path is too long");
     if (!script_load(&record->script, o->script, o->seed, arena)) return TOOL_DIFFERENT;
-    if (o->seconds > 0.0)
-        record->tick_count = (u32)(o->seconds * TICK_RATE + 0.5);
-    else
-        record->tick_count = record->script.tick_count ? record->script.tick_count : 20 * TICK_RATE;
-    if (record->tick_count < 1 || record->tick_count > RECORDING_TICKS_MAX)
+    f64 ticks = record->script.tick_count ? record->script.tick_count : 20 * TICK_RATE;
+    if (o->seconds != 0.0) ticks = floor(o->seconds * TICK_RATE + 0.5);
+    if (ticks < 1.0 || ticks > RECORDING_TICKS_MAX)
         return tool_fail(TOOL_USAGE, "record", "--seconds must be from one tick to four hours");
+    record->tick_count = (u32)ticks;
     if (!headless_load(&record->session, record->level, &record->common)) return TOOL_DIFFERENT;
     u32 internal[2];
     headless_internal_size(&record->view.settings, o->size, internal);
