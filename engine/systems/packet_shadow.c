@@ -3,22 +3,15 @@
 // an orthographic box: a square across the light, a depth range along it. Called by: packet_build.
 // Does not: split the view into cascades, or render.
 //
-// The square encloses the ball around the part of the view within reach. A ball looks the same
-// from every side, so the square keeps its size while the camera turns; and its centre moves by
-// whole texels only, so edges of shadows stand still while the camera moves (M. Valient, "Stable
-// rendering of cascaded shadow maps", ShaderX6, 2008).
+// The square encloses the ball of the shadow distance around the camera, whichever way it looks,
+// and a margin. It stands on a lattice as wide as the margin and moves only when the camera leaves
+// its cell: while one turns or walks a few metres the map shows the same, its key stays, and it is
+// not drawn again. The lattice is a whole number of texels wide, so edges of shadows stand still
+// when it does move (M. Valient, "Stable rendering of cascaded shadow maps", ShaderX6, 2008).
 #include "packet_parts.h"
 #include <math.h>
 
-// Smallest ball around a slice [near, far] of a symmetric pyramid of view, its centre on the axis
-// at the returned distance: equidistant to a near and a far corner, or at the far plane if that
-// point lies beyond. tan2: tan_x^2 + tan_y^2, so corners are at depth * sqrt(tan2) from the axis.
-static f64 slice_ball(f64 near, f64 far, f64 tan2, f64 *radius) {
-    f64 center = 0.5 * (near + far) * (1.0 + tan2);
-    center = MIN(center, far);
-    *radius = sqrt((far - center) * (far - center) + far * far * tan2);
-    return center;
-}
+#define MARGIN 0.125 // of the distance: width of the lattice
 
 ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m, u32 size_px) {
     ShadowFit fit = {.back = vec3_scale(direction, -1.0f)};
@@ -27,20 +20,18 @@ ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m
     fit.right = vec3_normalize(vec3_cross(helper, fit.back));
     fit.up = vec3_cross(fit.back, fit.right);
 
-    f64 tan2 = (f64)view->tan_x * view->tan_x + (f64)view->tan_y * view->tan_y, radius;
-    f64 ahead = slice_ball(view->near, MAX(distance_m, view->near * 2.0f), tan2, &radius);
-    Vec3 center = vec3_add(view->position, vec3_scale(view->forward, (f32)ahead));
-
-    // Two texels wider than the ball: snapping moves it by up to half a texel, filters read one
-    // more.
-    f64 half = radius * size_px / (size_px - 2.0), texel = 2.0 * half / size_px;
-    fit.center_right = floor(vec3_dot(center, fit.right) / texel + 0.5) * texel;
-    fit.center_up = floor(vec3_dot(center, fit.up) / texel + 0.5) * texel;
+    // The camera is at most half a cell off the centre. Two texels more: filters read one beyond.
+    f64 radius = MAX(distance_m, view->near * 2.0f);
+    f64 half = radius * (1.0 + 0.5 * MARGIN) * size_px / (size_px - 2.0);
+    f64 texel = 2.0 * half / size_px, cell = floor(radius * MARGIN / texel) * texel;
+    Vec3 center = view->position;
+    fit.center_right = floor(vec3_dot(center, fit.right) / cell + 0.5) * cell;
+    fit.center_up = floor(vec3_dot(center, fit.up) / cell + 0.5) * cell;
     fit.half_m = (f32)half;
     fit.texel_m = (f32)texel;
-    f32 middle = vec3_dot(center, fit.back);
-    fit.front = middle + (f32)radius;
-    fit.rear = middle - (f32)radius;
+    f64 middle = floor(vec3_dot(center, fit.back) / cell + 0.5) * cell;
+    fit.front = (f32)(middle + half);
+    fit.rear = (f32)(middle - half);
 
     const Vec3 normals[5] = {fit.right, vec3_scale(fit.right, -1.0f), fit.up,
                              vec3_scale(fit.up, -1.0f), fit.back};

@@ -159,7 +159,7 @@ extern "C" {
     C(F32, attenuation_constant, "", 1, "attenuation_constant", 0, 1000, "polynomial: kc")        \
     C(F32, attenuation_linear, "1/m", 0, "attenuation_linear", 0, 1000, "polynomial: kl")         \
     C(F32, attenuation_quadratic, "1/m2", 1, "attenuation_quadratic", 0, 1000, "polynomial: kq")  \
-    C(F32, shadow_distance, "m", 40, "shadow_distance", 1, 1000, "reach of the shadow map")       \
+    C(F32, shadow_distance, "m", 40, "shadow_distance", 1, 1000, "reach of shadows from the camera") \
     C(U32, shadow_size, "px", 1024, "shadow_size", 64, 4096, "side of the shadow map")            \
     C(F32, gravity, "m/s2", 9.81, "gravity", 0, 100, "pull on walkers")
 

@@ -408,11 +408,15 @@ TEST(systems_packet, shadow_map_covers_the_view_and_its_casters) {
                 depth = k & 1 ? 40 : p->frame.camera[3];
                 nx = k & 2 ? 1 : -1, ny = k & 4 ? 1 : -1;
             }
-            for (u32 a = 0; a < 3; a++)
-                point[a] =
-                    p->frame.camera[a] + (p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny +
-                                          p->frame.ray_forward[a]) *
-                                             depth;
+            f32 ray[3], length2 = 0;
+            for (u32 a = 0; a < 3; a++) {
+                ray[a] = p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny +
+                         p->frame.ray_forward[a];
+                length2 += ray[a] * ray[a];
+            }
+            // The shadow distance is one from the camera, not a depth.
+            depth = MIN(depth, 40 / sqrtf(length2));
+            for (u32 a = 0; a < 3; a++) point[a] = p->frame.camera[a] + ray[a] * depth;
             Vec4 clip = mat4_mul_vec4(shadow, (Vec4){point[0], point[1], point[2], 1});
             ASSERT_NEAR(clip.w, 1, 1e-6);
             f64 slack = 1e-4;
@@ -468,6 +472,36 @@ TEST(systems_packet, shadow_map_stands_still) {
             ASSERT_NEAR(moved, floor(moved + 0.5), 0.02);
         }
     }
+    systems_fixture_destroy(f);
+}
+
+// Turning on the spot never draws the map again, a walk of some metres only now and then.
+TEST(systems_packet, shadow_map_waits_for_a_longer_walk) {
+    SystemsFixture *f = systems_fixture_create(5);
+    Entity sun, camera = shadow_scene(f, &sun);
+    fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -5), vec3(1, 1, 1), 0, COLLISION_NONE);
+    TransformTable *t = FIXTURE_TABLE(f, Transform, transform);
+    t->pitch[FIXTURE_ROW(f, transform, sun)] = -50;
+    u32 eye = FIXTURE_ROW(f, transform, camera), changes = 0;
+    u64 key = 0;
+    for (u32 round = 0; round < 36; round++) {
+        t->yaw[eye] = (f32)round * 10.0f;
+        t->pitch[eye] = (f32)(round % 7) * 10.0f - 30.0f;
+        table_touch(&t->table, eye);
+        systems_settle(&f->systems, &f->context);
+        u64 now = fixture_packet(f, camera, settings_default(), 64, 64, 0)->shadow_key;
+        if (round > 0) assert_true(now == key);
+        key = now;
+    }
+    for (u32 round = 0; round < 100; round++) { // ten metres
+        t->x[eye] = (f32)round * 0.1f;
+        table_touch(&t->table, eye);
+        systems_settle(&f->systems, &f->context);
+        u64 now = fixture_packet(f, camera, settings_default(), 64, 64, 0)->shadow_key;
+        changes += now != key;
+        key = now;
+    }
+    assert_in_range(changes, 1, 6);
     systems_fixture_destroy(f);
 }
 
