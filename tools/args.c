@@ -2,6 +2,7 @@
 // Data in: a ToolSpec (table of options with their targets) and argv. Data out: filled targets,
 // positional arguments, or a message with a suggestion; --help from the same table.
 // Called by: every command. Does not: abbreviate option names, read the environment.
+#include "../engine/base/log.h"
 #include "../engine/level/suggest.h"
 #include "tool.h"
 #include <errno.h>
@@ -21,7 +22,18 @@ int tool_fail(int code, const char *command, const char *format, ...) {
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     fprintf(stderr, command[0] ? "luz %s: %s\n" : "luz%s: %s\n", command, text);
+    tool_explain(text);
     return code;
+}
+
+static char explanation[2048];
+void tool_explain(const char *sentence) {
+    snprintf(explanation, sizeof explanation, "%s", sentence);
+}
+
+const char *tool_explanation(void) {
+    if (!explanation[0]) log_last_error(explanation, sizeof explanation);
+    return explanation;
 }
 
 const char *tool_suggest(const char *wrong, const char *const *words, u32 count) {

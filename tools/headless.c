@@ -46,11 +46,24 @@ const SessionDesc *tool_session(void) {
     return &luz_project ? &luz_project : &engine_alone;
 }
 
+void headless_explain(const Diagnostics *diagnostics) {
+    for (u32 i = 0; i < diagnostics->count; i++) {
+        const Diagnostic *item = &diagnostics->items[i];
+        if (!item->is_error) continue;
+        char text[1024];
+        diagnostic_format(item, text, sizeof text);
+        text[strcspn(text, "\n")] = 0;
+        tool_explain(text);
+        return;
+    }
+}
+
 bool headless_load(Session *session, const char *path, const ToolCommon *common) {
     bool ok = session_load(session, path);
     const Diagnostics *diagnostics = session->diagnostics;
     bool show = !ok || (diagnostics && diagnostics->warning_count > 0 && !common->quiet);
     if (show && diagnostics) diagnostics_print(diagnostics, stderr);
+    if (!ok && diagnostics) headless_explain(diagnostics);
     return ok;
 }
 

@@ -24,6 +24,8 @@ void headless_close(Headless *headless);
 const SessionDesc *tool_session(void);
 // Prints diagnostics on stderr: all of a failed load, warnings of a good one unless quiet.
 bool headless_load(Session *session, const char *path, const ToolCommon *common);
+// The first error, for --json.
+void headless_explain(const Diagnostics *diagnostics);
 // NULL (the player's eyes) or a name: as asked, else "main", else the first camera with a name.
 const char *headless_camera(const Session *session, const char *asked);
 

@@ -72,6 +72,7 @@ static int import_model(const char *path, const char *out, bool force, const Too
     if (!ok || (diagnostics->warning_count && !common->quiet))
         diagnostics_print(diagnostics, stderr);
     if (!ok) {
+        headless_explain(diagnostics);
         result = TOOL_DIFFERENT;
     } else {
         const char *text = import_text(relative, world, &store, arena);

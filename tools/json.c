@@ -145,8 +145,12 @@ void json_hash(Json *json, const char *key, u64 hash) {
     json_text(json, key, text);
 }
 
+static bool was_printed;
+bool json_was_printed(void) { return was_printed; }
+
 void json_print(Json *json) {
     LUZ_ASSERT(json->depth == 0);
+    was_printed = true;
     puts(json->text);
     fflush(stdout);
 }

@@ -35,5 +35,6 @@ void json_f64(Json *json, const char *key, f64 value);
 void json_bool(Json *json, const char *key, bool value);
 void json_hash(Json *json, const char *key, u64 hash); // "0123456789abcdef"
 void json_print(Json *json);                           // to stdout, with a newline
+bool json_was_printed(void);
 bool json_save(Json *json, const char *path);
 #endif

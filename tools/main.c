@@ -3,6 +3,7 @@
 // Does not: know what any command does; one file each, listed in TOOL_COMMANDS.
 #include "../engine/base/jobs.h"
 #include "../engine/base/log.h"
+#include "json.h"
 #include "tool.h"
 #include <errno.h>
 #include <stdio.h>
@@ -29,7 +30,10 @@ static void print_help(void) {
            "             LUZ_LOG=debug|info|warning|error|none sets what is printed\n");
 }
 
+static bool wants_json;
+
 void tool_begin(const ToolCommon *common) {
+    wants_json = common->json;
     // Facts of the engine (the device in use, ...) are for those who ask with LUZ_LOG.
     if (!getenv("LUZ_LOG")) log_set_level(LOG_SEVERITY_WARNING);
     jobs_start(common->threads);
@@ -66,8 +70,21 @@ static int run(int argc, char **argv) {
     return tool_fail(TOOL_USAGE, "", "unknown command '%s'; see `luz --help`", name);
 }
 
+// A reader of JSON gets some whatever happens.
+static void print_failure(int code) {
+    Json json = json_begin();
+    json_open_object(&json, NULL);
+    json_bool(&json, "ok", false);
+    json_u64(&json, "status", (u64)code);
+    json_text(&json, "error", tool_explanation());
+    json_close(&json);
+    json_print(&json);
+    json_free(&json);
+}
+
 int main(int argc, char **argv) {
     int code = run(argc, argv);
+    if (wants_json && code != TOOL_OK && !json_was_printed()) print_failure(code);
     // A result that nobody got is no success.
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     return tool_fail(TOOL_ENVIRONMENT, "", "the output cannot be written: %s", strerror(errno));

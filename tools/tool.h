@@ -91,6 +91,10 @@ ToolParse tool_parse(const ToolSpec *spec, int argc, char **argv, ToolCommon *co
 const char *tool_suggest(const char *wrong, const char *const *words, u32 count);
 // A message of this command on stderr: "luz shot: ...". Returns `code`.
 int tool_fail(int code, const char *command, const char *format, ...) PRINTF_LIKE(3, 4);
+// The sentence that --json gives for a command that failed without a result: that of tool_fail, or
+// what was explained here, else the newest error of the log.
+void tool_explain(const char *sentence);
+const char *tool_explanation(void);
 
 // Sets up what the common options say (threads, log level). Call tool_end before returning.
 void tool_begin(const ToolCommon *common);

@@ -73,6 +73,24 @@ TEST(tool_cli, json_of_text_commands) {
     assert_non_null(strstr(run.output, "\"text\": \"# Made by"));
 }
 
+TEST(tool_cli, json_of_failures) {
+    static const char *const commands[] = {
+        "info none.toml",   "shot none.toml -o none.png",
+        "replay none.luzr", "compare none.png none.png",
+        "import none.glb",  "record none.toml -o none.luzr",
+    };
+    for (u32 i = 0; i < COUNT_OF(commands); i++) {
+        char arguments[256];
+        snprintf(arguments, sizeof arguments, "%s --json", commands[i]);
+        Run run = luz("2>/dev/null", arguments);
+        assert_int_equal(run.status, 1);
+        const char *error = strstr(run.output, "\"error\": ");
+        if (run.output[0] != '{' || !error || !strstr(error, "none."))
+            fail_msg("luz %s: %s", arguments, run.output);
+        assert_non_null(strstr(run.output, "\"ok\": false"));
+    }
+}
+
 TEST(tool_cli, record_wants_a_length) {
     static const char *const lengths[] = {"-1", "0.001", "1e9", "1e300"};
     for (u32 i = 0; i < COUNT_OF(lengths); i++) {
