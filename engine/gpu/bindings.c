@@ -175,7 +175,8 @@ static void set_write(Gpu *gpu, const GpuBindGroupDesc *desc, const GpuBindLayou
             const GpuBufferItem *buffer = gpu_buffer_get(gpu, binding->buffer);
             LUZ_ASSERT(binding->offset < buffer->size);
             u64 range = buffer->size - binding->offset;
-            if (layout->kinds[i] == GPU_BINDING_UNIFORM_BUFFER) range = MIN(range, GPU_UNIFORM_RANGE);
+            if (layout->kinds[i] == GPU_BINDING_UNIFORM_BUFFER)
+                range = MIN(range, GPU_UNIFORM_RANGE);
             buffers[i] = (VkDescriptorBufferInfo){buffer->buffer,
                                                   buffer->stride * slot + binding->offset, range};
             continue;

@@ -85,8 +85,8 @@ static const VkVertexInputBindingDescription light_streams[] = {
     {0, sizeof(LightRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
     {1, sizeof(SpotRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
 };
-#define VERTEX_LAYOUT(name) \
-    {COUNT_OF(name##_streams), COUNT_OF(name##_attributes), name##_streams, name##_attributes}
+#define VERTEX_LAYOUT(name)                                                                        \
+    { COUNT_OF(name##_streams), COUNT_OF(name##_attributes), name##_streams, name##_attributes }
 static const struct {
     u32 stream_count, attribute_count;
     const VkVertexInputBindingDescription *streams;

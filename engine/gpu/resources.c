@@ -93,7 +93,8 @@ GpuBuffer gpu_create_buffer(Gpu *gpu, const GpuBufferDesc *desc) {
         item->stride = ALIGN_UP(item->size, alignment);
         total = item->stride * gpu->frame_count;
     }
-    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                               VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     if (desc->vertex) usage |= VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
     if (desc->index) usage |= VK_BUFFER_USAGE_INDEX_BUFFER_BIT;

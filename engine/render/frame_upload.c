@@ -13,23 +13,22 @@ static const char *const target_labels[RESOURCE_COUNT] = {
     RENDER_RESOURCES(X)
 #undef X
 };
-static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {
-    "frame",
+static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame",
 #define X(id, section, ...) #section,
-    FRAME_BUFFERS(X)
+                                                              FRAME_BUFFERS(X)
 #undef X
 };
 static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 height) {
     if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
-    renderer->targets[id] = gpu_create_texture(
-        renderer->gpu, &(GpuTextureDesc){.label = target_labels[id],
-                                         .heap = "targets",
-                                         .format = resource_formats[id],
-                                         .width = width,
-                                         .height = height,
-                                         .render_target = true,
-                                         .sampled = true,
-                                         .storage = id == RESOURCE_HDR});
+    renderer->targets[id] =
+        gpu_create_texture(renderer->gpu, &(GpuTextureDesc){.label = target_labels[id],
+                                                            .heap = "targets",
+                                                            .format = resource_formats[id],
+                                                            .width = width,
+                                                            .height = height,
+                                                            .render_target = true,
+                                                            .sampled = true,
+                                                            .storage = id == RESOURCE_HDR});
     renderer->usage[id] = GPU_USAGE_NONE;
     renderer->frame_group_stale = true;
     return renderer->targets[id].id != 0;
@@ -43,7 +42,8 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
                 ok = ok && target_create(renderer, id, packet->width_px, packet->height_px);
         if (renderer->readback.id) gpu_destroy_buffer(renderer->gpu, renderer->readback);
         renderer->readback = gpu_create_buffer(
-            renderer->gpu, &(GpuBufferDesc){.label = "image readback", .heap = "staging",
+            renderer->gpu, &(GpuBufferDesc){.label = "image readback",
+                                            .heap = "staging",
                                             .kind = GPU_BUFFER_READBACK,
                                             .size = (u64)packet->width_px * packet->height_px * 4});
         ok = ok && renderer->readback.id;
@@ -76,10 +76,11 @@ static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u6
             return false;
         }
         if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
-        *buffer = gpu_create_buffer(renderer->gpu,
-                                    &(GpuBufferDesc){.label = buffer_labels[id], .heap = "frame",
-                                                     .kind = GPU_BUFFER_DYNAMIC, .size = cap,
-                                                     .vertex = true});
+        *buffer = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = buffer_labels[id],
+                                                                    .heap = "frame",
+                                                                    .kind = GPU_BUFFER_DYNAMIC,
+                                                                    .size = cap,
+                                                                    .vertex = true});
         renderer->frame_group_stale = true;
         if (!buffer->id) return false;
     }
@@ -92,7 +93,11 @@ static bool frame_group_update(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
     GpuBindGroupDesc desc = {.label = "frame", .layout = renderer->frame_layout};
-    const struct { u32 binding; FrameBuffer buffer; u64 offset; } buffers[] = {
+    const struct {
+        u32 binding;
+        FrameBuffer buffer;
+        u64 offset;
+    } buffers[] = {
         {BINDING_FRAME, FRAME_BUFFER_FRAME, 0},
         {BINDING_MATERIALS, FRAME_BUFFER_MATERIALS, 0},
         {BINDING_DIRECTIONALS, FRAME_BUFFER_DIRECTIONALS, 0},
@@ -108,7 +113,12 @@ static bool frame_group_update(Renderer *renderer) {
     for (u32 i = 0; i < COUNT_OF(buffers); i++)
         desc.bindings[buffers[i].binding] = (GpuBinding){
             .buffer = renderer->buffers[buffers[i].buffer], .offset = buffers[i].offset};
-    const struct { u32 binding; RenderResource resource; GpuSampler sampler; bool depth; } images[] = {
+    const struct {
+        u32 binding;
+        RenderResource resource;
+        GpuSampler sampler;
+        bool depth;
+    } images[] = {
         {BINDING_GBUFFER_ALBEDO, RESOURCE_GBUFFER_ALBEDO, renderer->sampler_nearest, false},
         {BINDING_GBUFFER_NORMAL, RESOURCE_GBUFFER_NORMAL, renderer->sampler_nearest, false},
         {BINDING_DEPTH, RESOURCE_DEPTH, renderer->sampler_nearest, true},
@@ -119,9 +129,10 @@ static bool frame_group_update(Renderer *renderer) {
         {BINDING_ACCUMULATION, RESOURCE_ACCUMULATION, renderer->sampler_nearest, false},
     };
     for (u32 i = 0; i < COUNT_OF(images); i++)
-        desc.bindings[images[i].binding] = (GpuBinding){
-            .texture = renderer->targets[images[i].resource], .sampler = images[i].sampler,
-            .depth = images[i].depth};
+        desc.bindings[images[i].binding] =
+            (GpuBinding){.texture = renderer->targets[images[i].resource],
+                         .sampler = images[i].sampler,
+                         .depth = images[i].depth};
     desc.bindings[BINDING_OVERLAY] = (GpuBinding){
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};
@@ -134,9 +145,9 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
     if (!targets_resize(renderer, packet)) return false;
     if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0))
         return false;
-#define X(id, section, Type, min_count)                                                    \
-    if (!buffer_fill(renderer, FRAME_BUFFER_##id, PACKET_DATA(packet, section, Type),      \
-                     (u64)packet->section.count * sizeof(Type), min_count * sizeof(Type))) \
+#define X(id, section, Type, min_count)                                                            \
+    if (!buffer_fill(renderer, FRAME_BUFFER_##id, PACKET_DATA(packet, section, Type),              \
+                     (u64)packet->section.count * sizeof(Type), min_count * sizeof(Type)))         \
         return false;
     FRAME_BUFFERS(X)
 #undef X

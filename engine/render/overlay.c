@@ -11,10 +11,13 @@
 #pragma GCC diagnostic pop
 #include <string.h>
 
-#define TEXT_QUADS_MAX 8192 // more is cut off; a screen of text has about 5,000
+#define TEXT_QUADS_MAX   8192 // more is cut off; a screen of text has about 5,000
 #define EASY_FONT_HEIGHT 12.0f
 
-typedef struct EasyFontVertex { f32 x, y, z; u8 color[4]; } EasyFontVertex;
+typedef struct EasyFontVertex {
+    f32 x, y, z;
+    u8 color[4];
+} EasyFontVertex;
 
 static bool buffer_ensure(Renderer *renderer, GpuBuffer *buffer, const char *label, u64 size,
                           bool vertex) {
@@ -22,9 +25,11 @@ static bool buffer_ensure(Renderer *renderer, GpuBuffer *buffer, const char *lab
     if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
     u64 cap = 4096;
     while (cap < size) cap *= 2;
-    *buffer = gpu_create_buffer(renderer->gpu,
-                                &(GpuBufferDesc){.label = label, .kind = GPU_BUFFER_DYNAMIC,
-                                                 .size = cap, .vertex = vertex, .index = !vertex});
+    *buffer = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = label,
+                                                                .kind = GPU_BUFFER_DYNAMIC,
+                                                                .size = cap,
+                                                                .vertex = vertex,
+                                                                .index = !vertex});
     return buffer->id != 0;
 }
 
@@ -119,9 +124,12 @@ void overlay_record(const PassContext *c, const Overlay *overlay) {
 
 bool renderer_set_overlay_texture(Renderer *renderer, const u8 *rgba, u32 width, u32 height) {
     if (renderer->overlay_texture.id) gpu_destroy_texture(renderer->gpu, renderer->overlay_texture);
-    renderer->overlay_texture = gpu_create_texture(
-        renderer->gpu, &(GpuTextureDesc){.label = "overlay atlas", .format = GPU_FORMAT_RGBA8,
-                                         .width = width, .height = height, .sampled = true});
+    renderer->overlay_texture =
+        gpu_create_texture(renderer->gpu, &(GpuTextureDesc){.label = "overlay atlas",
+                                                            .format = GPU_FORMAT_RGBA8,
+                                                            .width = width,
+                                                            .height = height,
+                                                            .sampled = true});
     renderer->frame_group_stale = true;
     if (!renderer->overlay_texture.id) return false;
     gpu_upload_texture(renderer->gpu, renderer->overlay_texture, rgba, (u64)width * height * 4);

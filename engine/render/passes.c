@@ -7,8 +7,10 @@
 #include "render_internal.h"
 #include <string.h>
 
-#define USE(id, use_)      {RESOURCE_##id, GPU_USAGE_##use_, false}
-#define OVERWRITE(id, use_) {RESOURCE_##id, GPU_USAGE_##use_, true}
+#define USE(id, use_)                                                                              \
+    { RESOURCE_##id, GPU_USAGE_##use_, false }
+#define OVERWRITE(id, use_)                                                                        \
+    { RESOURCE_##id, GPU_USAGE_##use_, true }
 
 static void bind_frame(const PassContext *c, GpuPipeline pipeline) {
     gpu_cmd_bind_pipeline(c->cmd, pipeline);
@@ -30,10 +32,11 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
         if (draw->mesh >= r->mesh_count || r->meshes[draw->mesh].lods[0].index_count == 0) continue;
         const PacketMaterial *material = &materials[draw->material];
         GpuPipeline pipeline =
-            pipeline_get(r, c->packet, kind, (PipelineVariant){
-                .alpha_mask = alpha_mask,
-                .double_sided = material->double_sided != 0,
-                .textures = (material->albedo_texture ? 1 : 0) | (material->normal_texture ? 2 : 0)});
+            pipeline_get(r, c->packet, kind,
+                         (PipelineVariant){.alpha_mask = alpha_mask,
+                                           .double_sided = material->double_sided != 0,
+                                           .textures = (material->albedo_texture ? 1 : 0) |
+                                                       (material->normal_texture ? 2 : 0)});
         if (!pipeline.id) continue;
         if (pipeline.id != bound.id) {
             bind_frame(c, pipeline);
@@ -80,8 +83,10 @@ static void begin(const PassContext *c, const GpuRendering *rendering) {
     sized.height = c->packet->height_px;
     gpu_cmd_begin_rendering(c->cmd, &sized);
 }
-#define TARGET(id) {.texture = c->renderer->targets[RESOURCE_##id]}
-#define CLEARED(id) {.texture = c->renderer->targets[RESOURCE_##id], .clear = true}
+#define TARGET(id)                                                                                 \
+    { .texture = c->renderer->targets[RESOURCE_##id] }
+#define CLEARED(id)                                                                                \
+    { .texture = c->renderer->targets[RESOURCE_##id], .clear = true }
 
 // --- Shadow map: drawn only when what it shows changed (shadow_key) ---
 
@@ -106,28 +111,33 @@ static const Pass shadow_pass = {
 static void gbuffer_record(const PassContext *c) {
     // Colour is cleared as well: the background's material must be an index that exists.
     begin(c, &(GpuRendering){.targets = {CLEARED(GBUFFER_ALBEDO), CLEARED(GBUFFER_NORMAL)},
-                             .target_count = 2, .depth = CLEARED(DEPTH)});
+                             .target_count = 2,
+                             .depth = CLEARED(DEPTH)});
     draw_list(c, PIPELINE_GBUFFER, c->packet->opaque_draws, false);
     draw_list(c, PIPELINE_GBUFFER, c->packet->mask_draws, true);
     gpu_cmd_end_rendering(c->cmd);
 }
-static const Pass gbuffer_pass = {
-    "gbuffer",
-    {OVERWRITE(GBUFFER_ALBEDO, COLOR_TARGET), OVERWRITE(GBUFFER_NORMAL, COLOR_TARGET),
-     OVERWRITE(DEPTH, DEPTH_TARGET)},
-    3, gbuffer_record, NULL};
+static const Pass gbuffer_pass = {"gbuffer",
+                                  {OVERWRITE(GBUFFER_ALBEDO, COLOR_TARGET),
+                                   OVERWRITE(GBUFFER_NORMAL, COLOR_TARGET),
+                                   OVERWRITE(DEPTH, DEPTH_TARGET)},
+                                  3,
+                                  gbuffer_record,
+                                  NULL};
 
 static void forward_record(const PassContext *c) {
-    begin(c, &(GpuRendering){.targets = {CLEARED(HDR)}, .target_count = 1, .depth = CLEARED(DEPTH)});
+    begin(c,
+          &(GpuRendering){.targets = {CLEARED(HDR)}, .target_count = 1, .depth = CLEARED(DEPTH)});
     draw_list(c, PIPELINE_FORWARD, c->packet->opaque_draws, false);
     draw_list(c, PIPELINE_FORWARD, c->packet->mask_draws, true);
     gpu_cmd_end_rendering(c->cmd);
 }
-static const Pass forward_pass = {
-    "forward",
-    {OVERWRITE(HDR, COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
-     USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-    3, forward_record, NULL};
+static const Pass forward_pass = {"forward",
+                                  {OVERWRITE(HDR, COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
+                                   USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                                  3,
+                                  forward_record,
+                                  NULL};
 
 // --- Lighting ---
 
@@ -144,7 +154,9 @@ static const Pass deferred_pass = {
     {OVERWRITE(ACCUMULATION, COLOR_TARGET), USE(GBUFFER_ALBEDO, SAMPLED_FRAGMENT),
      USE(GBUFFER_NORMAL, SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
      USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-    5, deferred_record, NULL};
+    5,
+    deferred_record,
+    NULL};
 
 static void resolve_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(HDR)}, .target_count = 1});
@@ -152,8 +164,11 @@ static void resolve_record(const PassContext *c) {
     gpu_cmd_end_rendering(c->cmd);
 }
 static const Pass resolve_pass = {
-    "resolve", {OVERWRITE(HDR, COLOR_TARGET), USE(ACCUMULATION, SAMPLED_FRAGMENT)}, 2,
-    resolve_record, NULL};
+    "resolve",
+    {OVERWRITE(HDR, COLOR_TARGET), USE(ACCUMULATION, SAMPLED_FRAGMENT)},
+    2,
+    resolve_record,
+    NULL};
 
 static void tiled_record(const PassContext *c) {
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, PIPELINE_PLAIN);
@@ -161,17 +176,21 @@ static void tiled_record(const PassContext *c) {
     bind_frame(c, pipeline);
     gpu_cmd_dispatch(c->cmd, (c->packet->width_px + 7) / 8, (c->packet->height_px + 7) / 8, 1);
 }
-static const Pass tiled_pass = {
-    "lighting",
-    {OVERWRITE(HDR, STORAGE_COMPUTE), USE(GBUFFER_ALBEDO, SAMPLED_COMPUTE),
-     USE(GBUFFER_NORMAL, SAMPLED_COMPUTE), USE(DEPTH, SAMPLED_COMPUTE),
-     USE(SHADOW_MAP, SAMPLED_COMPUTE)},
-    5, tiled_record, NULL};
+static const Pass tiled_pass = {"lighting",
+                                {OVERWRITE(HDR, STORAGE_COMPUTE),
+                                 USE(GBUFFER_ALBEDO, SAMPLED_COMPUTE),
+                                 USE(GBUFFER_NORMAL, SAMPLED_COMPUTE), USE(DEPTH, SAMPLED_COMPUTE),
+                                 USE(SHADOW_MAP, SAMPLED_COMPUTE)},
+                                5,
+                                tiled_record,
+                                NULL};
 
 // --- What is drawn over the lit picture: sky, textured emission, blended surfaces ---
 
 static void over_record(const PassContext *c) {
-    begin(c, &(GpuRendering){.targets = {TARGET(HDR)}, .target_count = 1, .depth = TARGET(DEPTH),
+    begin(c, &(GpuRendering){.targets = {TARGET(HDR)},
+                             .target_count = 1,
+                             .depth = TARGET(DEPTH),
                              .depth_read_only = true});
     draw_fullscreen(c, PIPELINE_SKY);
     draw_list(c, PIPELINE_EMISSIVE, c->packet->emissive_draws, false);
@@ -181,7 +200,9 @@ static void over_record(const PassContext *c) {
 static const Pass over_pass = {
     "sky and glow",
     {USE(HDR, COLOR_TARGET), USE(DEPTH, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-    3, over_record, NULL};
+    3,
+    over_record,
+    NULL};
 
 // --- Picture ---
 
@@ -204,7 +225,9 @@ static const Pass debug_pass = {
     "debug view",
     {OVERWRITE(LDR, COLOR_TARGET), USE(GBUFFER_ALBEDO, SAMPLED_FRAGMENT),
      USE(GBUFFER_NORMAL, SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT)},
-    4, debug_record, NULL};
+    4,
+    debug_record,
+    NULL};
 
 static void present_record(const PassContext *c) {
     u32 width, height;
@@ -243,7 +266,8 @@ void pass_run(const PassContext *c, const Pass *pass) {
         GpuUsage from = r->usage[use->resource];
         if (!gpu_usage_needs_barrier(from, use->usage)) continue;
         barriers[barrier_count++] = (GpuBarrier){.texture = r->targets[use->resource],
-                                                 .from = from, .to = use->usage,
+                                                 .from = from,
+                                                 .to = use->usage,
                                                  .discard = use->discard};
         r->usage[use->resource] = use->usage;
     }

@@ -32,7 +32,10 @@ bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress p
 bool renderer_warm_up_path(Renderer *renderer, const Packet *packet);
 
 // Triangles over the picture (debug UI): vertices of GPU_VERTEX_UI, in window pixels.
-typedef struct OverlayVertex { f32 x, y, u, v; u32 color; } OverlayVertex;
+typedef struct OverlayVertex {
+    f32 x, y, u, v;
+    u32 color;
+} OverlayVertex;
 typedef struct OverlayCommand {
     u32 index_count, first_index;
     i32 vertex_offset;
@@ -54,9 +57,9 @@ bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, b
                    const Overlay *overlay);
 
 typedef struct RenderImage {
-    u8 *rgba;            // width * height * 4, sRGB encoded, rows from the top; in the arena given
+    u8 *rgba; // width * height * 4, sRGB encoded, rows from the top; in the arena given
     u32 width_px, height_px;
-    u64 hash;            // of size and pixels
+    u64 hash; // of size and pixels
 } RenderImage;
 // Begin, draw, wait, read back. out may be NULL (only draw and wait).
 bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,
@@ -67,7 +70,9 @@ u64 render_image_hash(const u8 *rgba, u32 width_px, u32 height_px);
 u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap);
 
 // Stats of the last drawn frame.
-typedef struct RendererStats { u32 draw_calls, triangles, barriers, pipelines, shadow_redrawn; } RendererStats;
+typedef struct RendererStats {
+    u32 draw_calls, triangles, barriers, pipelines, shadow_redrawn;
+} RendererStats;
 RendererStats renderer_stats(const Renderer *renderer);
 
 #ifdef __cplusplus

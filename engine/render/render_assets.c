@@ -1,30 +1,33 @@
 // render_assets.c: the level's meshes and textures on the device.
 //
 // Data in: an AssetStore. Data out: one vertex and one index buffer with all meshes and
-// their levels of detail, a texture an asset texture, bind groups per set of material textures. Called by renderer.c and passes.c. Does
-// not stream: a level is uploaded once.
+// their levels of detail, a texture an asset texture, bind groups per set of material textures.
+// Called by renderer.c and passes.c. Does not stream: a level is uploaded once.
 #include "render_internal.h"
 #include "../base/log.h"
 #include <string.h>
 
 static GpuTexture texture_1x1(Gpu *gpu, const char *label, u32 rgba) {
     GpuTexture texture = gpu_create_texture(
-        gpu, &(GpuTextureDesc){.label = label, .format = GPU_FORMAT_RGBA8, .width = 1, .height = 1,
-                               .sampled = true});
+        gpu,
+        &(GpuTextureDesc){
+            .label = label, .format = GPU_FORMAT_RGBA8, .width = 1, .height = 1, .sampled = true});
     if (texture.id) gpu_upload_texture(gpu, texture, &rgba, sizeof rgba);
     return texture;
 }
 
 bool render_assets_create(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
-    renderer->sampler_nearest =
-        gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true, .nearest_mips = true});
+    renderer->sampler_nearest = gpu_create_sampler(
+        gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true, .nearest_mips = true});
     renderer->sampler_linear = gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "linear"});
     // The software driver pays for anisotropy by the sample; a GPU hardly does.
     f32 anisotropy = gpu_info(gpu)->is_software ? 0.0f : MIN(8.0f, gpu_info(gpu)->max_anisotropy);
-    renderer->sampler_repeat = gpu_create_sampler(
-        gpu, &(GpuSamplerDesc){.label = "repeat", .repeat = true, .anisotropy = anisotropy,
-                               .nearest_mips = gpu_info(gpu)->is_software});
+    renderer->sampler_repeat =
+        gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "repeat",
+                                                  .repeat = true,
+                                                  .anisotropy = anisotropy,
+                                                  .nearest_mips = gpu_info(gpu)->is_software});
     renderer->sampler_shadow =
         gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "shadow", .compare_greater = true});
     renderer->white = texture_1x1(gpu, "white", 0xFFFFFFFFu);
@@ -75,12 +78,16 @@ static bool meshes_upload(Renderer *renderer, const AssetStore *assets) {
     }
     renderer->mesh_count = assets->mesh_count;
     renderer->meshes = ARENA_PUSH(&renderer->arena, GpuMesh, MAX(assets->mesh_count, 1));
-    renderer->vertices = gpu_create_buffer(
-        gpu, &(GpuBufferDesc){.label = "mesh vertices", .heap = "meshes", .vertex = true,
-                              .size = MAX(vertex_count, 1) * sizeof(MeshVertex)});
-    renderer->indices = gpu_create_buffer(
-        gpu, &(GpuBufferDesc){.label = "mesh indices", .heap = "meshes", .index = true,
-                              .size = MAX(index_count, 1) * sizeof(u32)});
+    renderer->vertices =
+        gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "mesh vertices",
+                                                .heap = "meshes",
+                                                .vertex = true,
+                                                .size = MAX(vertex_count, 1) * sizeof(MeshVertex)});
+    renderer->indices =
+        gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "mesh indices",
+                                                .heap = "meshes",
+                                                .index = true,
+                                                .size = MAX(index_count, 1) * sizeof(u32)});
     if (!renderer->vertices.id || !renderer->indices.id) return false;
     u64 vertex = 0, index = 0;
     for (u32 i = 0; i < assets->mesh_count; i++) {
@@ -111,7 +118,8 @@ static bool textures_upload(Renderer *renderer, const AssetStore *assets) {
         const Texture *texture = &assets->textures[i];
         if (texture->width == 0 || texture->pixels == NULL) continue;
         u64 size = 0;
-        for (u32 mip = 0, w = texture->width, h = texture->height; mip < texture->mip_count; mip++) {
+        for (u32 mip = 0, w = texture->width, h = texture->height; mip < texture->mip_count;
+             mip++) {
             size += (u64)w * h * 4;
             w = MAX(w / 2, 1), h = MAX(h / 2, 1);
         }
@@ -120,8 +128,10 @@ static bool textures_upload(Renderer *renderer, const AssetStore *assets) {
             &(GpuTextureDesc){.label = "level texture",
                               .format = texture->kind == TEXTURE_SRGB ? GPU_FORMAT_RGBA8_SRGB
                                                                       : GPU_FORMAT_RGBA8,
-                              .width = texture->width, .height = texture->height,
-                              .mip_count = texture->mip_count, .sampled = true});
+                              .width = texture->width,
+                              .height = texture->height,
+                              .mip_count = texture->mip_count,
+                              .sampled = true});
         if (renderer->textures[i].id)
             gpu_upload_texture(renderer->gpu, renderer->textures[i], texture->pixels, size);
         else
@@ -144,7 +154,8 @@ bool renderer_set_assets(Renderer *renderer, const AssetStore *assets) {
 
 static GpuTexture texture_or(const Renderer *renderer, u32 id, GpuTexture stand_in) {
     return id > 0 && id < renderer->texture_count && renderer->textures[id].id
-               ? renderer->textures[id] : stand_in;
+               ? renderer->textures[id]
+               : stand_in;
 }
 
 GpuBindGroup render_material_group(Renderer *renderer, const PacketMaterial *material) {
@@ -164,19 +175,22 @@ GpuBindGroup render_material_group(Renderer *renderer, const PacketMaterial *mat
         renderer->material_group_cap = cap;
     }
     MaterialGroup *g = &renderer->material_groups[renderer->material_group_count++];
-    *g = (MaterialGroup){material->albedo_texture, material->normal_texture,
-                         material->emissive_texture, {0}};
+    *g = (MaterialGroup){
+        material->albedo_texture, material->normal_texture, material->emissive_texture, {0}};
     g->group = gpu_create_bind_group(
         renderer->gpu,
         &(GpuBindGroupDesc){
             .label = "material",
             .layout = renderer->material_layout,
             .bindings = {
-                [BINDING_ALBEDO_TEXTURE] = {.texture = texture_or(renderer, g->albedo, renderer->white),
+                [BINDING_ALBEDO_TEXTURE] = {.texture =
+                                                texture_or(renderer, g->albedo, renderer->white),
                                             .sampler = renderer->sampler_repeat},
-                [BINDING_NORMAL_TEXTURE] = {.texture = texture_or(renderer, g->normal, renderer->flat_normal),
+                [BINDING_NORMAL_TEXTURE] = {.texture = texture_or(renderer, g->normal,
+                                                                  renderer->flat_normal),
                                             .sampler = renderer->sampler_repeat},
-                [BINDING_EMISSIVE_TEXTURE] = {.texture = texture_or(renderer, g->emissive, renderer->black),
+                [BINDING_EMISSIVE_TEXTURE] = {.texture = texture_or(renderer, g->emissive,
+                                                                    renderer->black),
                                               .sampler = renderer->sampler_repeat},
             }});
     return g->group;

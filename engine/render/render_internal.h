@@ -8,13 +8,13 @@
 #include "render.h"
 
 // X(id, label, format, kind): targets of the internal resolution; SHADOW_MAP has its own size.
-#define RENDER_RESOURCES(X)                                     \
-    X(SHADOW_MAP, "shadow map", GPU_FORMAT_D32F)                \
-    X(GBUFFER_ALBEDO, "gbuffer albedo", GPU_FORMAT_RGBA8_SRGB)  \
-    X(GBUFFER_NORMAL, "gbuffer normal", GPU_FORMAT_RG16)        \
-    X(DEPTH, "depth", GPU_FORMAT_D32F)                          \
-    X(HDR, "hdr", GPU_FORMAT_RGBA16F)                           \
-    X(ACCUMULATION, "accumulation", GPU_FORMAT_RGBA32F)         \
+#define RENDER_RESOURCES(X)                                                                        \
+    X(SHADOW_MAP, "shadow map", GPU_FORMAT_D32F)                                                   \
+    X(GBUFFER_ALBEDO, "gbuffer albedo", GPU_FORMAT_RGBA8_SRGB)                                     \
+    X(GBUFFER_NORMAL, "gbuffer normal", GPU_FORMAT_RG16)                                           \
+    X(DEPTH, "depth", GPU_FORMAT_D32F)                                                             \
+    X(HDR, "hdr", GPU_FORMAT_RGBA16F)                                                              \
+    X(ACCUMULATION, "accumulation", GPU_FORMAT_RGBA32F)                                            \
     X(LDR, "ldr", GPU_FORMAT_RGBA8)
 typedef enum RenderResource {
 #define X(id, ...) RESOURCE_##id,
@@ -26,13 +26,13 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
 
 // Buffers filled from the packet each frame: X(id, section, element type, smallest count). The
 // smallest count makes a buffer cover the uniform block that views it.
-#define FRAME_BUFFERS(X)                                              \
-    X(INSTANCES, instances, InstanceRecord, 1)                        \
-    X(MATERIALS, materials, MaterialRecord, MATERIALS_CAP)            \
-    X(DIRECTIONALS, directionals, DirectionalRecord, DIRECTIONALS_CAP) \
-    X(LIGHTS, lights, LightRecord, 2 * LIGHT_BLOCK_CAP)               \
-    X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                       \
-    X(TILES, tiles, TileRecord, 1)                                    \
+#define FRAME_BUFFERS(X)                                                                           \
+    X(INSTANCES, instances, InstanceRecord, 1)                                                     \
+    X(MATERIALS, materials, MaterialRecord, MATERIALS_CAP)                                         \
+    X(DIRECTIONALS, directionals, DirectionalRecord, DIRECTIONALS_CAP)                             \
+    X(LIGHTS, lights, LightRecord, 2 * LIGHT_BLOCK_CAP)                                            \
+    X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                                                    \
+    X(TILES, tiles, TileRecord, 1)                                                                 \
     X(LIGHT_INDICES, light_indices, u32, 1)
 typedef enum FrameBuffer {
     FRAME_BUFFER_FRAME, // the FrameRecord itself

@@ -21,15 +21,15 @@ Renderer *renderer_create(Gpu *gpu) {
     for (u32 i = 0; i < BINDING_FRAME_COUNT; i++)
         frame.kinds[i] = i <= BINDING_SPOT_BLOCK      ? GPU_BINDING_UNIFORM_BUFFER
                          : i <= BINDING_LIGHT_INDICES ? GPU_BINDING_STORAGE_BUFFER
-                         : i == BINDING_HDR_STORAGE ? GPU_BINDING_STORAGE_TEXTURE
-                                                    : GPU_BINDING_SAMPLED_TEXTURE;
+                         : i == BINDING_HDR_STORAGE   ? GPU_BINDING_STORAGE_TEXTURE
+                                                      : GPU_BINDING_SAMPLED_TEXTURE;
     renderer->frame_layout = gpu_create_bind_layout(gpu, &frame);
-    renderer->material_layout = gpu_create_bind_layout(
-        gpu, &(GpuBindLayoutDesc){.label = "material",
-                                  .count = BINDING_MATERIAL_COUNT,
-                                  .kinds = {GPU_BINDING_SAMPLED_TEXTURE,
-                                            GPU_BINDING_SAMPLED_TEXTURE,
-                                            GPU_BINDING_SAMPLED_TEXTURE}});
+    renderer->material_layout =
+        gpu_create_bind_layout(gpu, &(GpuBindLayoutDesc){.label = "material",
+                                                         .count = BINDING_MATERIAL_COUNT,
+                                                         .kinds = {GPU_BINDING_SAMPLED_TEXTURE,
+                                                                   GPU_BINDING_SAMPLED_TEXTURE,
+                                                                   GPU_BINDING_SAMPLED_TEXTURE}});
     if (!render_assets_create(renderer)) {
         renderer_destroy(renderer);
         return NULL;
@@ -54,15 +54,15 @@ static void shadow_map_ready(const PassContext *c) {
     if (r->usage[RESOURCE_SHADOW_MAP] != GPU_USAGE_NONE || c->packet->shadow_size_px > 0) return;
     gpu_cmd_barriers(c->cmd,
                      &(GpuBarrier){.texture = r->targets[RESOURCE_SHADOW_MAP],
-                                   .from = GPU_USAGE_NONE, .to = GPU_USAGE_SAMPLED_FRAGMENT,
+                                   .from = GPU_USAGE_NONE,
+                                   .to = GPU_USAGE_SAMPLED_FRAGMENT,
                                    .discard = true},
                      1);
     r->usage[RESOURCE_SHADOW_MAP] = GPU_USAGE_SAMPLED_FRAGMENT;
 }
 
 static const PathRow *path_of(const Packet *packet) {
-    return packet->settings.view != VIEW_FINAL ? &debug_path
-                                               : &path_table[packet->settings.path];
+    return packet->settings.view != VIEW_FINAL ? &debug_path : &path_table[packet->settings.path];
 }
 
 bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,

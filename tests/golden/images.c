@@ -88,13 +88,19 @@ static void check_golden(const char *level, const char *camera, u32 ticks, const
     studio_close(&studio);
 }
 
-TEST_GPU(golden, image_cloister) { check_golden("data/levels/cloister.toml", "main", 60, "cloister"); }
+TEST_GPU(golden, image_cloister) {
+    check_golden("data/levels/cloister.toml", "main", 60, "cloister");
+}
 TEST_GPU(golden, image_cloister_garden) {
     check_golden("data/levels/cloister.toml", "garden", 0, "cloister_garden");
 }
 TEST_GPU(golden, image_cornell) { check_golden("data/levels/cornell.toml", "main", 0, "cornell"); }
-TEST_GPU(golden, image_light_box) { check_golden("data/levels/light_box.toml", "main", 30, "light_box"); }
+TEST_GPU(golden, image_light_box) {
+    check_golden("data/levels/light_box.toml", "main", 30, "light_box");
+}
 TEST_GPU(golden, image_lights_4096) {
     check_golden("data/levels/lights_4096.toml", "main", 30, "lights_4096");
 }
-TEST_GPU(golden, image_plane_test) { check_golden("data/levels/plane_test.toml", "main", 0, "plane_test"); }
+TEST_GPU(golden, image_plane_test) {
+    check_golden("data/levels/plane_test.toml", "main", 0, "plane_test");
+}

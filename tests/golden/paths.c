@@ -49,9 +49,13 @@ static void compare_paths(const char *level, u32 width, u32 height) {
 
 TEST_GPU(golden, paths_agree_cloister) { compare_paths("data/levels/cloister.toml", 256, 144); }
 TEST_GPU(golden, paths_agree_cornell) { compare_paths("data/levels/cornell.toml", 256, 144); }
-TEST_GPU(golden, paths_agree_cornell_empty) { compare_paths("data/levels/cornell_empty.toml", 256, 144); }
+TEST_GPU(golden, paths_agree_cornell_empty) {
+    compare_paths("data/levels/cornell_empty.toml", 256, 144);
+}
 TEST_GPU(golden, paths_agree_light_box) { compare_paths("data/levels/light_box.toml", 256, 144); }
-TEST_GPU(golden, paths_agree_lights_4096) { compare_paths("data/levels/lights_4096.toml", 128, 72); }
+TEST_GPU(golden, paths_agree_lights_4096) {
+    compare_paths("data/levels/lights_4096.toml", 128, 72);
+}
 TEST_GPU(golden, paths_agree_plane_test) { compare_paths("data/levels/plane_test.toml", 256, 144); }
 
 TEST(golden, every_level_is_in_the_list) {
@@ -75,7 +79,7 @@ TEST(golden, every_level_is_in_the_list) {
 TEST_GPU(golden, settings_in_all_paths) {
     Studio studio;
     studio_open(&studio, "data/levels/plane_test.toml");
-    static const char *const variants[] = {"shadows=off",  "tonemap=off",       "light_culling=off",
+    static const char *const variants[] = {"shadows=off",      "tonemap=off",  "light_culling=off",
                                            "mesh_culling=off", "light_gain=0", "exposure=2"};
     for (u32 v = 0; v < COUNT_OF(variants); v++)
         for (u32 path = 0; path < PATH_COUNT; path++) {
@@ -84,8 +88,7 @@ TEST_GPU(golden, settings_in_all_paths) {
             settings.path = path;
             studio_draw(&studio, "main", &settings, 96, 54);
         }
-    EnvironmentTable *environment =
-        WORLD_TABLE(studio.session.world, Environment, environment);
+    EnvironmentTable *environment = WORLD_TABLE(studio.session.world, Environment, environment);
     u32 row = world_singleton(studio.session.world, COMPONENT_environment);
     for (u32 attenuation = 0; attenuation < 3; attenuation++) {
         environment->attenuation[row] = attenuation;
@@ -129,8 +132,8 @@ TEST_GPU(golden, sizes_and_warm_up) {
         }
     settings = settings_default();
     const Packet *packet = session_packet(
-        &studio.session, &(SessionView){.camera = "main", .settings = settings, .width_px = 161,
-                                        .height_px = 91});
+        &studio.session,
+        &(SessionView){.camera = "main", .settings = settings, .width_px = 161, .height_px = 91});
     assert_true(renderer_warm_up(studio.renderer, packet, NULL, NULL));
     u32 pipelines = renderer_stats(studio.renderer).pipelines;
     RenderImage last = studio_draw(&studio, "main", &settings, 161, 91);

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 const char *const studio_levels[] = {
-    "data/levels/cloister.toml",  "data/levels/cornell.toml",    "data/levels/cornell_empty.toml",
+    "data/levels/cloister.toml",  "data/levels/cornell.toml",     "data/levels/cornell_empty.toml",
     "data/levels/light_box.toml", "data/levels/lights_4096.toml", "data/levels/plane_test.toml",
 };
 const u32 studio_level_count = COUNT_OF(studio_levels);
@@ -41,9 +41,10 @@ void studio_close(Studio *studio) {
 RenderImage studio_draw(Studio *studio, const char *camera, const RenderSettings *settings,
                         u32 width_px, u32 height_px) {
     session_frame_begin(&studio->session);
-    const Packet *packet = session_packet(
-        &studio->session, &(SessionView){.camera = camera, .settings = *settings,
-                                         .width_px = width_px, .height_px = height_px});
+    const Packet *packet = session_packet(&studio->session, &(SessionView){.camera = camera,
+                                                                           .settings = *settings,
+                                                                           .width_px = width_px,
+                                                                           .height_px = height_px});
     assert_non_null(packet);
     assert_null(packet_validate(packet, packet->size, studio->session.assets.mesh_count,
                                 studio->session.assets.texture_count));
@@ -67,7 +68,8 @@ const char *studio_shell(int *exit_code, const char *format, ...) {
     output[size] = 0;
     // Drain what does not fit, so that the child is not killed by a closed pipe.
     char rest[4096];
-    while (fread(rest, 1, sizeof rest, pipe) > 0) {}
+    while (fread(rest, 1, sizeof rest, pipe) > 0) {
+    }
     int status = pclose(pipe);
     *exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
     return output;

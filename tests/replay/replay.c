@@ -20,16 +20,18 @@ static void json_text(const char *json, const char *key, char *out, u64 cap) {
 }
 
 TEST_GPU(replay, hashes_do_not_depend_on_threads) {
-    static const char *const variants[][2] = {{"1", "1"}, {"1", "2"}, {"2", "1"}, {"2", "2"}, {"2", "2"}};
+    static const char *const variants[][2] = {
+        {"1", "1"}, {"1", "2"}, {"2", "1"}, {"2", "2"}, {"2", "2"}};
     char image[COUNT_OF(variants)][64], world[COUNT_OF(variants)][64];
     for (u32 i = 0; i < COUNT_OF(variants); i++) {
         int code;
         const char *stats = test_temp_path("stats.json"), *png = test_temp_path("shot.png");
-        const char *output = studio_shell(
-            &code,
-            "LP_NUM_THREADS=%s %s/luz shot data/levels/cloister.toml -o %s --size 320x180 --tick 45 "
-            "--camera main --threads %s --validation --stats %s",
-            variants[i][0], studio_build_directory(), png, variants[i][1], stats);
+        const char *output =
+            studio_shell(&code,
+                         "LP_NUM_THREADS=%s %s/luz shot data/levels/cloister.toml -o %s --size "
+                         "320x180 --tick 45 "
+                         "--camera main --threads %s --validation --stats %s",
+                         variants[i][0], studio_build_directory(), png, variants[i][1], stats);
         if (code != 0) fail_msg("luz shot ended with %d: %s", code, output);
         output = studio_shell(&code, "cat %s", stats);
         json_text(output, "image_hash", image[i], sizeof image[i]);
@@ -50,10 +52,12 @@ TEST_GPU(replay, recording_of_20_seconds) {
     output = studio_shell(&code, "%s/luz replay %s --threads 2", studio_build_directory(), file);
     if (code != 0) fail_msg("luz replay ended with %d: %s", code, output);
     // The player really walked: start and end of the recording are different places.
-    output = studio_shell(&code, "%s/luz replay %s --threads 1 --no-images", studio_build_directory(), file);
+    output = studio_shell(&code, "%s/luz replay %s --threads 1 --no-images",
+                          studio_build_directory(), file);
     if (code != 0) fail_msg("luz replay with one thread ended with %d: %s", code, output);
 
-    // One bit of the file changed, at many places: each is refused or named, none passes or crashes.
+    // One bit of the file changed, at many places: each is refused or named, none passes or
+    // crashes.
     FILE *in = fopen(file, "rb");
     assert_non_null(in);
     fseek(in, 0, SEEK_END);
@@ -72,7 +76,8 @@ TEST_GPU(replay, recording_of_20_seconds) {
         assert_int_equal(fwrite(bytes, 1, (size_t)size, out), size);
         fclose(out);
         bytes[at] ^= (u8)(1u << k);
-        output = studio_shell(&code, "%s/luz replay %s --no-images", studio_build_directory(), broken);
+        output =
+            studio_shell(&code, "%s/luz replay %s --no-images", studio_build_directory(), broken);
         if (code != 1) fail_msg("bit %u of byte %ld: code %d: %s", k, at, code, output);
         assert_true(strlen(output) > 20);
     }

@@ -410,8 +410,8 @@ TEST(systems_packet, shadow_map_covers_the_view_and_its_casters) {
             }
             f32 ray[3], length2 = 0;
             for (u32 a = 0; a < 3; a++) {
-                ray[a] = p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny +
-                         p->frame.ray_forward[a];
+                ray[a] =
+                    p->frame.ray_right[a] * nx + p->frame.ray_up[a] * ny + p->frame.ray_forward[a];
                 length2 += ray[a] * ray[a];
             }
             // The shadow distance is one from the camera, not a depth.
