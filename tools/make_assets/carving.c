@@ -1,72 +1,91 @@
-// Columns and vaults: see carving.h. Leaves and twists are displaced lathes; a vault's webs are
-// ruled surfaces, so they need few triangles and the arcs stay exact.
+// Columns and vaults: see carving.h. A vault's webs are ruled surfaces, so they need few triangles
+// and the arcs stay exact.
 #include "carving.h"
 
-typedef struct Capital {
-    float y0, y1, r0, r1, start, sweep;
-} Capital;
+#include <stdlib.h>
 
-// Two tiers of leaves around a bell. Each leaf swells along its axis, curls out at its tip and
-// drops back; the upper tier stands between the lower leaves.
-static Vec3 capital_point(const void *context, float u, float v) {
-    const Capital *c = context;
-    float angle = (c->start + c->sweep * u) * PI_F / 180;
-    float height = c->y1 - c->y0, bell = c->r0 + (c->r1 - c->r0) * v * v * 0.75f;
-    float lower = powf(0.5f + 0.5f * cosf(4 * angle), 0.8f);
-    float upper = powf(0.5f - 0.5f * cosf(4 * angle), 0.8f);
-    float low_curl = float_smooth(0.0f, 0.42f, v) * (1 - float_smooth(0.5f, 0.62f, v));
-    float high_curl = float_smooth(0.45f, 0.85f, v) * (1 - float_smooth(0.93f, 1.05f, v));
-    float swell = (c->r1 - c->r0) * (0.55f * lower * low_curl + 0.75f * upper * high_curl);
-    float r = bell + swell;
-    return vec3(r * cosf(angle), c->y0 + height * v, -r * sinf(angle));
+// A turned and carved shaft is one skin of rows over a fixed number of edges: corners that the rows
+// share keep it cheap, and let it lose detail evenly in the distance. Leaves and rolls have their
+// ridges on the even edges and their valleys on the odd ones, so that few edges draw them well.
+typedef struct SkinRow {
+    float y, ridge, valley; // radii of even and odd edges
+    float turn;             // of the whole row, in turns
+} SkinRow;
+
+#define SKIN_ROWS_MAX 24
+
+typedef struct Skin {
+    SkinRow rows[SKIN_ROWS_MAX];
+    int count;
+} Skin;
+
+static void skin_row(Skin *k, float y, float ridge, float valley, float turn) {
+    if (k->count == SKIN_ROWS_MAX) abort();
+    k->rows[k->count++] = (SkinRow){y, ridge, valley, turn};
 }
 
-void carve_capital(Soup *s, float y0, float y1, float r0, float r1, int segments, float start_deg,
-                   float sweep_deg) {
-    Capital c = {y0, y1, r0, r1, start_deg, sweep_deg};
-    float around = (r0 + r1) * 0.5f * sweep_deg * PI_F / 180 / s->tile_m;
-    shape_surface(s, capital_point, &c, segments, 4, vec2(around, (y1 - y0) / s->tile_m));
+// Two tiers of leaves around a bell that widens from r0 to r1: the upper tier stands between the
+// lower leaves.
+static void skin_capital(Skin *k, float y0, float y1, float r0, float r1, float turn) {
+    float height = y1 - y0, wide = r1 - r0;
+    skin_row(k, y0, r0, r0, turn);
+    skin_row(k, y0 + height * 0.45f, r0 + wide * 0.8f, r0, turn);
+    skin_row(k, y0 + height * 0.85f, r0 + wide * 0.4f, r0 + wide * 1.25f, turn);
+    skin_row(k, y1, r1 - wide * 0.1f, r1 - wide * 0.1f, turn);
 }
 
-// An attic base in four points: torus, scotia, torus.
-static void carve_base(Soup *s, float y0, float r, int segments, float start, float sweep) {
-    Vec2 base[4] = {{r * 1.64f, y0},
-                    {r * 1.6f, y0 + r * 0.5f},
-                    {r * 1.2f, y0 + r * 0.75f},
-                    {r * 1.0f, y0 + r * 1.25f}};
-    shape_lathe(s, base, 4, segments, start, sweep);
-}
-
-typedef struct Twist {
-    float y0, y1, radius, turns;
-} Twist;
-
-static Vec3 twist_point(const void *context, float u, float v) {
-    const Twist *t = context;
-    float angle = u * 2 * PI_F, phase = t->turns * v * 2 * PI_F;
-    float fade = float_smooth(0, 0.08f, v) * (1 - float_smooth(0.92f, 1, v));
-    float r = t->radius * (1 + 0.17f * fade * cosf(4 * (angle - phase)));
-    return vec3(r * cosf(angle), t->y0 + (t->y1 - t->y0) * v, -r * sinf(angle));
+static void skin_add(Soup *s, const Skin *k, int edges, float start_deg, float sweep_deg) {
+    float widest = 0, along = 0;
+    for (int j = 0; j < k->count; j++) widest = fmaxf(widest, k->rows[j].ridge);
+    float around = 0.7f * widest * sweep_deg * PI_F / 180 / s->tile_m;
+    soup_carve(s, 66);
+    for (int j = 0; j + 1 < k->count; j++) {
+        const SkinRow *pair[2] = {k->rows + j, k->rows + j + 1};
+        float dr = pair[1]->ridge - pair[0]->ridge, dy = pair[1]->y - pair[0]->y;
+        float v[2] = {along / s->tile_m, 0};
+        along += sqrtf(dr * dr + dy * dy);
+        v[1] = along / s->tile_m;
+        for (int i = 0; i < edges; i++) {
+            Vec3 p[2][2];
+            Vec2 uv[2][2];
+            for (int c = 0; c < 4; c++) {
+                int edge = i + (c & 1), row = c >> 1;
+                float u = (float)edge / (float)edges + pair[row]->turn;
+                float a = (start_deg + sweep_deg * u) * PI_F / 180;
+                float r = edge & 1 ? pair[row]->valley : pair[row]->ridge;
+                p[row][c & 1] = vec3(r * cosf(a), pair[row]->y, -r * sinf(a));
+                uv[row][c & 1] = vec2(u * around, v[row]);
+            }
+            soup_quad(s, p[0][0], p[0][1], p[1][1], p[1][0], uv[0][0], uv[0][1], uv[1][1],
+                      uv[1][0]);
+        }
+    }
+    soup_smooth(s, 0);
 }
 
 void carve_column(Soup *s, Vec3 foot, float y1, float radius, float twist) {
     Affine saved = s->transform, place = affine_translation(foot.x, 0, foot.z);
     s->transform = affine_mul(&saved, &place);
-    float base_top = foot.y + radius * 1.25f, bell = fmaxf(radius * 3.4f, 0.2f);
-    float cap_y = y1 - bell;
-    carve_base(s, foot.y, radius, 10, 0, 360);
+    bool round = radius > 0.1f; // the thick ones stand alone and get a closer look
+    float r = radius, y0 = foot.y, base_top = y0 + r * 1.25f, cap_y = y1 - fmaxf(r * 3.4f, 0.2f);
+    Skin k = {.count = 0};
+    skin_row(&k, y0, r * 1.62f, r * 1.62f, 0);
+    if (round) skin_row(&k, y0 + r * 0.55f, r * 1.56f, r * 1.56f, 0);
+    skin_row(&k, base_top, r, r, 0);
+    float top = cap_y - r * 0.3f, turn = 0;
     if (twist != 0) {
-        Twist t = {base_top, cap_y, radius, twist};
-        shape_surface(s, twist_point, &t, 12, 6, vec2(1, (cap_y - base_top) / s->tile_m));
-    } else {
-        Vec2 shaft[2] = {{radius, base_top}, {radius * 0.88f, cap_y}};
-        shape_turn(s, shaft, 2, 10);
+        const int steps = (int)(fabsf(twist) * 6 + 0.5f);
+        turn = twist;
+        for (int i = 0; i <= steps; i++) {
+            float t = (float)i / (float)steps, end = i == 0 || i == steps ? 0.1f : 1;
+            skin_row(&k, float_lerp(base_top + r * 0.3f, top - r * 0.3f, t), r * (1 + 0.14f * end),
+                     r * (1 - 0.2f * end), turn * t);
+        }
     }
-    Vec2 ring[3] = {{radius * 0.88f, cap_y - radius * 0.3f},
-                    {radius * 1.17f, cap_y - radius * 0.12f},
-                    {radius * 0.9f, cap_y + radius * 0.08f}};
-    shape_turn(s, ring, 3, 10);
-    carve_capital(s, cap_y, y1, radius * 0.9f, radius * 1.75f, 16, 0, 360);
+    skin_row(&k, top, r * 0.9f, r * 0.9f, turn);
+    skin_row(&k, cap_y - r * 0.1f, r * 1.2f, r * 1.2f, turn);
+    skin_capital(&k, cap_y + r * 0.1f, y1, r * 0.9f, r * 1.75f, turn);
+    skin_add(s, &k, round ? 12 : 8, 0, 360);
     s->transform = saved;
 }
 
@@ -74,42 +93,57 @@ void carve_wall_shaft(Soup *s, Vec3 foot, float y1, float radius, float start_de
                       float sweep_deg) {
     Affine saved = s->transform, place = affine_translation(foot.x, 0, foot.z);
     s->transform = affine_mul(&saved, &place);
-    float bell = fmaxf(radius * 2.6f, 0.22f), cap_y = y1 - bell;
-    int segments = (int)(sweep_deg / 30 + 0.5f);
-    Vec2 plinth[2] = {{radius * 1.7f, foot.y}, {radius * 1.7f, foot.y + 0.12f}};
-    shape_lathe(s, plinth, 2, segments, start_deg, sweep_deg);
-    carve_base(s, foot.y + 0.12f, radius, segments, start_deg, sweep_deg);
-    Vec2 shaft[2] = {{radius, foot.y + 0.12f + radius * 1.25f}, {radius * 0.92f, cap_y}};
-    shape_lathe(s, shaft, 2, segments, start_deg, sweep_deg);
-    carve_capital(s, cap_y, y1 - 0.06f, radius * 0.92f, radius * 1.5f, segments * 3 / 2, start_deg,
-                  sweep_deg);
-    Vec2 abacus[4] = {
-        {radius * 1.5f, y1 - 0.07f}, {radius * 1.9f, y1 - 0.05f}, {radius * 1.9f, y1}, {0, y1}};
-    shape_lathe(s, abacus, 4, segments, start_deg, sweep_deg);
+    float r = radius, y0 = foot.y, cap_y = y1 - fmaxf(r * 2.6f, 0.22f);
+    Skin k = {.count = 0};
+    skin_row(&k, y0, r * 1.7f, r * 1.7f, 0);
+    skin_row(&k, y0 + 0.12f + r * 0.5f, r * 1.62f, r * 1.62f, 0);
+    skin_row(&k, y0 + 0.12f + r * 1.25f, r, r, 0);
+    skin_row(&k, cap_y, r * 0.92f, r * 0.92f, 0);
+    float wide = r * 0.58f, height = y1 - 0.06f - cap_y;
+    skin_row(&k, cap_y + height * 0.45f, r + wide * 0.7f, r + wide * 0.1f, 0);
+    skin_row(&k, cap_y + height * 0.85f, r + wide * 0.5f, r + wide * 1.15f, 0);
+    skin_row(&k, y1 - 0.06f, r * 1.9f, r * 1.9f, 0);
+    skin_row(&k, y1, r * 1.9f, r * 1.9f, 0);
+    int edges = (int)(sweep_deg / 45 + 0.5f);
+    skin_add(s, &k, edges < 4 ? edges + 1 : edges, start_deg, sweep_deg);
     s->transform = saved;
 }
+
+void carve_bud(Soup *s, float y0, float y1, float r0, float r1) {
+    Skin k = {.count = 0};
+    skin_capital(&k, y0, y1, r0, r1, 0);
+    skin_add(s, &k, 8, 0, 360);
+}
+
+#define SMALL_ROSETTE 0.141f // radius in m, below which a flower has no hollow
 
 typedef struct Rosette {
     Vec3 center;
     float radius, depth, petals, facing;
 } Rosette;
 
+// v: 0 the heart, 1/3 its hollow (which small flowers do not have), 2/3 the petals' crest, 1 the
+// rim, which lies in the wall. Three edges to a petal: the valley before it and its two shoulders.
 static Vec3 rosette_point(const void *context, float u, float v) {
     const Rosette *r = context;
-    float angle = u * 2 * PI_F, petal = fabsf(cosf(angle * r->petals * 0.5f));
-    // Petals part from the heart outwards; the rim lies in the wall.
-    float dist = v * r->radius * (1 - 0.22f * (1 - petal) * v * v);
-    float heart = 0.8f * float_smooth(0.26f, 0.0f, v);
-    float bulge = sinf(float_clamp((v - 0.2f) / 0.8f, 0, 1) * PI_F);
-    float relief = heart + bulge * (0.25f + 0.6f * sqrtf(petal)) + 0.12f * (1 - v);
-    if (v > 0.99f) relief = -0.02f;
-    return vec3(r->center.x + dist * cosf(angle) * -r->facing, r->center.y + dist * sinf(angle),
-                r->center.z + r->facing * r->depth * relief);
+    int ring = (int)(v * 3 + 0.5f);
+    if (r->radius < SMALL_ROSETTE) ring = v < 0.25f ? 0 : v < 0.75f ? 2 : 3;
+    int edge = (int)(u * r->petals * 3 + 0.5f) % 3;
+    float angle = u * 2 * PI_F, petal = edge ? 1 : 0;
+    const float dist[4] = {0, 0.26f, 0.5f + 0.2f * petal, 0.72f + 0.28f * petal};
+    const float relief[4] = {r->radius < SMALL_ROSETTE ? 0.2f : 0.9f, 0.15f, 0.05f + 0.95f * petal,
+                             -0.02f};
+    float d = dist[ring] * r->radius;
+    return vec3(r->center.x + d * cosf(angle) * -r->facing, r->center.y + d * sinf(angle),
+                r->center.z + r->facing * r->depth * relief[ring]);
 }
 
 void carve_rosette(Soup *s, Vec3 center, float radius, float depth, int petals, float facing) {
     Rosette r = {center, radius, depth, (float)petals, facing};
-    shape_surface(s, rosette_point, &r, petals * 4, 4, vec2(1, radius / s->tile_m));
+    soup_carve(s, 70);
+    shape_surface(s, rosette_point, &r, petals * 3, radius < SMALL_ROSETTE ? 2 : 3,
+                  vec2(1, radius / s->tile_m));
+    soup_smooth(s, 0);
 }
 
 // ---- vaults -------------------------------------------------------------------------------------
@@ -172,9 +206,10 @@ static void carve_rib(Soup *s, const Vault *v, Affine place, float half, float w
     s->transform = affine_mul(&saved, &place);
     s->transform = affine_mul(&s->transform, &stretch);
     s->tile_m = tile / half;
-    Vec2 profile[6] = {{d * 0.25f, w},   {-d * 0.45f, w},  {-d, w * 0.42f},
-                       {-d, -w * 0.42f}, {-d * 0.45f, -w}, {d * 0.25f, -w}};
-    shape_arch_moulding(s, &unit, profile, 6, segments, 0, -1);
+    Vec2 profile[4] = {{d * 0.2f, w}, {-d, w * 0.5f}, {-d, -w * 0.5f}, {d * 0.2f, -w}};
+    soup_smooth(s, 72);
+    shape_arch_moulding(s, &unit, profile, 4, segments, 0, -1);
+    soup_smooth(s, 0);
     s->tile_m = tile;
     s->transform = saved;
 }
@@ -192,9 +227,10 @@ void carve_vault_diagonals(Soup *s, const Vault *v, float width, float depth, in
     Affine saved = s->transform, place = affine_turn_x(180);
     place.t = vec3(cx, v->spring_y + v->rise + 0.02f, cz);
     s->transform = affine_mul(&saved, &place);
-    carve_capital(s, 0, depth * 1.25f, width * 0.9f, width * 1.15f, 8, 0, 360);
-    Vec2 cap[3] = {{width * 1.05f, depth * 1.25f}, {width * 0.6f, depth * 1.5f}, {0, depth * 1.6f}};
-    shape_turn(s, cap, 3, 10);
+    soup_smooth(s, 60);
+    Vec2 cap[3] = {{width * 0.8f, 0}, {width * 1.1f, depth * 1.3f}, {0, depth * 1.6f}};
+    shape_turn(s, cap, 3, 6);
+    soup_smooth(s, 0);
     s->transform = saved;
 }
 

@@ -12,9 +12,8 @@
 // of four rolls around the shaft, 0 for a smooth one.
 void carve_column(Soup *s, Vec3 foot, float y1, float radius, float twist);
 
-// A capital's bell of two tiers of leaves that curl outwards, `sweep_deg` of a turn.
-void carve_capital(Soup *s, float y0, float y1, float r0, float r1, int segments, float start_deg,
-                   float sweep_deg);
+// Two tiers of leaves around a bell, from radius r0 at y0 to r1 at y1.
+void carve_bud(Soup *s, float y0, float y1, float r0, float r1);
 
 // A shaft that is engaged in a wall, with base and capital; it covers sweep_deg from start_deg.
 void carve_wall_shaft(Soup *s, Vec3 foot, float y1, float radius, float start_deg, float sweep_deg);

@@ -103,13 +103,22 @@ static void write_primitive(Writer *w, const Mesh *m, int material, bool first) 
         else
             ((uint32_t *)packed)[i] = indices[i] - lo;
     }
+    bool tinted = false;
+    for (uint32_t i = 0; i < n; i++) tinted |= m->vertices[lo + i].tint != TINT_NONE;
+    char colors[32] = "";
+    if (tinted) {
+        for (uint32_t i = 0; i < n; i++) memcpy(scratch + i, &m->vertices[lo + i].tint, 4);
+        snprintf(colors, sizeof colors, "\"COLOR_0\":%d,",
+                 write_accessor(w, scratch, (size_t)n * 4, TARGET_VERTICES, 5121, n, "VEC4",
+                                ",\"normalized\":true"));
+    }
     int list = write_accessor(w, packed, (size_t)index_count * (small ? 2 : 4), TARGET_INDICES,
                               small ? 5123 : 5125, index_count, "SCALAR", "");
     if (w->material_index[material] < 0) w->material_index[material] = w->material_count++;
     buffer_print(&w->meshes,
-                 "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"TANGENT\":%d,"
+                 "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"TANGENT\":%d,%s"
                  "\"TEXCOORD_0\":%d},\"indices\":%d,\"material\":%d}",
-                 first ? "" : ",", position, normal, tangent, uv, list,
+                 first ? "" : ",", position, normal, tangent, colors, uv, list,
                  w->material_index[material]);
     free(scratch);
     free(packed);

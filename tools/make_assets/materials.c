@@ -7,12 +7,7 @@
 // name, texture, tile_m, colour, metallic, roughness, emissive, strength, textured, masked
 static const Material MATERIALS[MAT_COUNT] = {
     [MAT_ASHLAR] = {"ashlar", TEXTURE_ASHLAR, 2.0f, {1, 1, 1}, 0, 0.88f, {0, 0, 0}, 0, 0, 0},
-    [MAT_ASHLAR_DARK] =
-        {"ashlar_dark", TEXTURE_ASHLAR, 2.0f, {0.72f, 0.74f, 0.78f}, 0, 0.9f, {0, 0, 0}, 0, 0, 0},
-    [MAT_VAULT] = {"vault", TEXTURE_ASHLAR, 1.35f, {1, 0.96f, 0.9f}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
     [MAT_CARVED] = {"carved", TEXTURE_CARVED, 1.0f, {1, 1, 1}, 0, 0.72f, {0, 0, 0}, 0, 0, 0},
-    [MAT_CARVED_RED] =
-        {"carved_red", TEXTURE_CARVED, 1.0f, {0.78f, 0.5f, 0.4f}, 0, 0.74f, {0, 0, 0}, 0, 0, 0},
     [MAT_CARVED_DARK] =
         {"carved_dark", TEXTURE_CARVED, 1.0f, {0.62f, 0.63f, 0.62f}, 0, 0.45f, {0, 0, 0}, 0, 0, 0},
     [MAT_MARBLE] = {"marble", TEXTURE_CARVED, 0.8f, {1, 1, 1}, 0, 0.38f, {0, 0, 0}, 0, 0, 0},
@@ -26,8 +21,7 @@ static const Material MATERIALS[MAT_COUNT] = {
     [MAT_BARK] = {"bark", TEXTURE_BARK, 0.6f, {1, 1, 1}, 0, 0.92f, {0, 0, 0}, 0, 0, 0},
     [MAT_WOOD] = {"wood", TEXTURE_WOOD, 1.2f, {1, 1, 1}, 0, 0.62f, {0, 0, 0}, 0, 0, 0},
     [MAT_IRON] = {"iron", TEXTURE_IRON, 0.25f, {1, 1, 1}, 0.85f, 0.5f, {0, 0, 0}, 0, 0, 0},
-    [MAT_BRASS] = {"brass", TEXTURE_NONE, 1, {0.72f, 0.48f, 0.18f}, 1, 0.32f, {0, 0, 0}, 0, 0, 0},
-    [MAT_CLAY] = {"clay", TEXTURE_NONE, 1, {0.35f, 0.14f, 0.075f}, 0, 0.75f, {0, 0, 0}, 0, 0, 0},
+    [MAT_PLAIN] = {"plain", TEXTURE_NONE, 1, {1, 1, 1}, 0, 0.45f, {0, 0, 0}, 0, 0, 0},
     [MAT_SOIL] = {"soil", TEXTURE_NONE, 1, {0.05f, 0.036f, 0.026f}, 0, 0.95f, {0, 0, 0}, 0, 0, 0},
     [MAT_WATER] = {"water", TEXTURE_WATER, 1.1f, {1, 1, 1}, 0, 0.06f, {0, 0, 0}, 0, 0, 0},
     [MAT_SPRAY] =
@@ -68,9 +62,7 @@ static const Material MATERIALS[MAT_COUNT] = {
                            0,
                            0},
     [MAT_FLAME] =
-        {"flame", TEXTURE_NONE, 1, {0.1f, 0.05f, 0.02f}, 0, 1, {1, 0.38f, 0.07f}, 7, 0, 0},
-    [MAT_FLAME_CORE] =
-        {"flame_core", TEXTURE_NONE, 1, {0.1f, 0.08f, 0.05f}, 0, 1, {1, 0.66f, 0.2f}, 10, 0, 0},
+        {"flame", TEXTURE_NONE, 1, {0.1f, 0.06f, 0.03f}, 0, 1, {1, 0.44f, 0.1f}, 6.5f, 0, 0},
     [MAT_EMBER] =
         {"ember", TEXTURE_NONE, 1, {0.04f, 0.02f, 0.015f}, 0, 1, {1, 0.2f, 0.03f}, 2.2f, 0, 0},
     [MAT_WAX] =
@@ -85,6 +77,36 @@ static const Material MATERIALS[MAT_COUNT] = {
     [MAT_PLASTER_WHITE] =
         {"plaster_white", TEXTURE_NONE, 1, {0.73f, 0.73f, 0.72f}, 0, 0.9f, {0, 0, 0}, 0, 0, 0},
 };
+
+typedef struct Tint {
+    int material;
+    float tile_m;
+    float color[3]; // times the material's
+} Tint;
+
+static const Tint TINTS[SURFACE_COUNT - MAT_COUNT] = {
+    [TINT_ASHLAR_DARK - MAT_COUNT] = {MAT_ASHLAR, 2.0f, {0.72f, 0.74f, 0.78f}},
+    [TINT_VAULT - MAT_COUNT] = {MAT_ASHLAR, 1.35f, {1, 0.96f, 0.9f}},
+    [TINT_CARVED_RED - MAT_COUNT] = {MAT_CARVED, 1.0f, {0.78f, 0.5f, 0.4f}},
+    [TINT_CARVED_DARK - MAT_COUNT] = {MAT_CARVED, 1.0f, {0.62f, 0.63f, 0.62f}},
+    [TINT_CARVED_CLAY - MAT_COUNT] = {MAT_CARVED, 1.0f, {0.9f, 0.42f, 0.28f}},
+    [TINT_IRON - MAT_COUNT] = {MAT_PLAIN, 1.0f, {0.05f, 0.047f, 0.044f}},
+    [TINT_BRASS - MAT_COUNT] = {MAT_PLAIN, 1.0f, {0.5f, 0.31f, 0.1f}},
+    [TINT_WAX - MAT_COUNT] = {MAT_PLAIN, 1.0f, {0.78f, 0.68f, 0.5f}},
+    [TINT_BARK - MAT_COUNT] = {MAT_PLAIN, 1.0f, {0.11f, 0.07f, 0.045f}},
+    [TINT_STONE - MAT_COUNT] = {MAT_PLAIN, 1.0f, {0.24f, 0.22f, 0.18f}},
+    [TINT_DISH - MAT_COUNT] = {MAT_WAX, 1.0f, {0.6f, 0.42f, 0.2f}},
+};
+
+static uint32_t pack_byte(float v) { return (uint32_t)(v * 255 + 0.5f); }
+
+Surface surface_get(int surface) {
+    if (surface < MAT_COUNT) return (Surface){surface, MATERIALS[surface].tile_m, TINT_NONE};
+    const Tint *t = TINTS + (surface - MAT_COUNT);
+    uint32_t tint = pack_byte(t->color[0]) | pack_byte(t->color[1]) << 8 |
+                    pack_byte(t->color[2]) << 16 | 0xFF000000u;
+    return (Surface){t->material, t->tile_m, tint};
+}
 
 const Material *material_get(int material) {
     return material >= 0 && material < MAT_COUNT ? MATERIALS + material : NULL;

@@ -1,19 +1,21 @@
 // Materials: the one table of every surface in the level, and the textures behind them.
 //
-// Data in: a material number. Data out: its constants. Called by the models (soup_use), the mesh
-// builder (texture scale) and the .glb writer. It paints nothing: see texture.h.
+// Data in: a material or surface number. Data out: its constants. Called by the models (soup_use),
+// the mesh builder (texture scale, tint) and the .glb writer. It paints nothing: see texture.h.
+//
+// A surface is a material, or a material with another colour and texture scale: these differ by
+// vertex colours only, so that a model needs one draw for all of them.
 #ifndef MAKE_ASSETS_MATERIALS_H
 #define MAKE_ASSETS_MATERIALS_H
 
 #include "texture.h"
 
+#include <stdint.h>
+
 enum {
     MAT_ASHLAR,      // wall of squared blocks
-    MAT_ASHLAR_DARK, // the same, weathered: outer walls, tower
-    MAT_VAULT,       // the same in small courses: vault webs
     MAT_CARVED,      // dressed limestone: columns, mouldings
-    MAT_CARVED_RED,  // every second voussoir
-    MAT_CARVED_DARK, // wet or shaded stone: basins, steps
+    MAT_CARVED_DARK, // wet stone: basins, steps, kerbs
     MAT_MARBLE,      // statue, altar
     MAT_FLOOR,
     MAT_ROOF,
@@ -24,8 +26,7 @@ enum {
     MAT_BARK,
     MAT_WOOD,
     MAT_IRON,
-    MAT_BRASS,
-    MAT_CLAY,
+    MAT_PLAIN, // small things without a texture, in any colour
     MAT_SOIL,
     MAT_WATER,
     MAT_SPRAY, // falling threads of water
@@ -37,7 +38,6 @@ enum {
     MAT_GLASS_ROSE,
     MAT_LANTERN_GLASS,
     MAT_FLAME,
-    MAT_FLAME_CORE,
     MAT_EMBER,
     MAT_WAX,
     MAT_FIREFLY,
@@ -46,8 +46,23 @@ enum {
     MAT_HILL,
     MAT_MOON,
     MAT_PLASTER_WHITE,
-    MAT_COUNT
+    MAT_COUNT,
+    // Tinted materials.
+    TINT_ASHLAR_DARK = MAT_COUNT, // weathered: outer walls, tower
+    TINT_VAULT,                   // small courses: vault webs
+    TINT_CARVED_RED,              // every second voussoir
+    TINT_CARVED_DARK,             // shaded stone: copings, thresholds
+    TINT_CARVED_CLAY,             // ridge tiles
+    TINT_IRON,
+    TINT_BRASS,
+    TINT_WAX,
+    TINT_BARK,
+    TINT_STONE,
+    TINT_DISH, // of wax, since the candle on it shines through
+    SURFACE_COUNT
 };
+
+#define TINT_NONE 0xFFFFFFFFu
 
 typedef struct Material {
     const char *name;
@@ -61,6 +76,13 @@ typedef struct Material {
     bool masked;            // alpha test at 0.5, double sided
 } Material;
 
-const Material *material_get(int material);
+typedef struct Surface {
+    int material;
+    float tile_m;
+    uint32_t tint; // linear RGBA8, red lowest; TINT_NONE for a material as it is
+} Surface;
+
+const Material *material_get(int material); // below MAT_COUNT
+Surface surface_get(int surface);           // below SURFACE_COUNT
 
 #endif

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WELD_M 2e-4f // corners nearer than this are one point
+#define WELD_M     2e-4f // corners nearer than this are one point
+#define VALLEY_COS 0.88f // flatter valleys are smooth even in carved things
 
 void soup_init(Soup *s) {
     memset(s, 0, sizeof *s);
@@ -20,12 +21,19 @@ void soup_free(Soup *s) {
     free(s->normal);
     free(s->uv);
     free(s->material);
+    free(s->crease_deg);
+    free(s->tint);
     memset(s, 0, sizeof *s);
 }
 
-void soup_use(Soup *s, int material) {
-    s->material_now = material;
-    s->tile_m = material_get(material)->tile_m;
+void soup_use(Soup *s, int surface) {
+    s->surface_now = surface;
+    s->tile_m = surface_get(surface).tile_m;
+}
+
+void soup_smooth(Soup *s, int crease_deg) { s->crease_now_deg = (uint8_t)crease_deg; }
+void soup_carve(Soup *s, int crease_deg) {
+    s->crease_now_deg = (uint8_t)(crease_deg + CREASE_VALLEYS);
 }
 
 static void *grow(void *p, size_t bytes) {
@@ -44,6 +52,8 @@ static void soup_push(Soup *s, const Vec3 p[3], const Vec2 uv[3]) {
         s->normal = grow(s->normal, corners * sizeof *s->normal);
         s->uv = grow(s->uv, corners * sizeof *s->uv);
         s->material = grow(s->material, s->triangle_cap * sizeof *s->material);
+        s->crease_deg = grow(s->crease_deg, s->triangle_cap * sizeof *s->crease_deg);
+        s->tint = grow(s->tint, s->triangle_cap * sizeof *s->tint);
     }
     bool mirrored = affine_determinant(&s->transform) < 0;
     uint32_t base = s->triangle_count * 3;
@@ -53,7 +63,10 @@ static void soup_push(Soup *s, const Vec3 p[3], const Vec2 uv[3]) {
         s->uv[base + k] = uv[from];
         s->normal[base + k] = vec3(0, 0, 0);
     }
-    s->material[s->triangle_count++] = (uint8_t)s->material_now;
+    Surface surface = surface_get(s->surface_now);
+    s->material[s->triangle_count] = (uint8_t)surface.material;
+    s->crease_deg[s->triangle_count] = s->crease_now_deg;
+    s->tint[s->triangle_count++] = surface.tint;
 }
 
 void soup_triangle(Soup *s, Vec3 a, Vec3 b, Vec3 c, Vec2 ua, Vec2 ub, Vec2 uc) {
@@ -147,13 +160,21 @@ static float corner_angle(const Vec3 *p, int k) {
     return acosf(float_clamp(vec3_dot(e0, e1), -1, 1));
 }
 
+// Whether the triangle of corner b rises over that of corner a; both meet in that point.
+static bool is_valley(const Soup *s, uint32_t a, uint32_t b, const Vec3 *face) {
+    const Vec3 *p = s->position + b / 3 * 3;
+    Vec3 mid = vec3_scale(vec3_add(p[0], vec3_add(p[1], p[2])), 1.0f / 3);
+    return vec3_dot(face[a / 3], vec3_sub(mid, s->position[a])) > 0;
+}
+
 static void compute_normals(const Soup *s, float crease_deg, Vec3 *out) {
     uint32_t corners = s->triangle_count * 3;
-    float crease_cos = cosf(crease_deg * PI_F / 180);
     uint32_t *point = malloc(corners * sizeof *point), *next = malloc(corners * sizeof *next);
     uint32_t *head = malloc(corners * sizeof *head);
     Vec3 *face = malloc(s->triangle_count * sizeof *face);
-    if (!point || !next || !head || !face) abort();
+    float *crease_cos = malloc(s->triangle_count * sizeof *crease_cos);
+    uint32_t *around = malloc(corners * sizeof *around), *group = malloc(corners * sizeof *group);
+    if (!point || !next || !head || !face || !crease_cos || !around || !group) abort();
     memset(head, 0xFF, corners * sizeof *head);
     KeyTable table = keys_make(corners, sizeof(int32_t) * 3);
     for (uint32_t i = 0; i < corners; i++) {
@@ -167,25 +188,47 @@ static void compute_normals(const Soup *s, float crease_deg, Vec3 *out) {
     for (uint32_t t = 0; t < s->triangle_count; t++) {
         const Vec3 *p = s->position + t * 3;
         face[t] = vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
+        int own = s->crease_deg[t] & (CREASE_VALLEYS - 1);
+        float crease = own ? (float)own : crease_deg;
+        crease_cos[t] = cosf(crease * PI_F / 180);
     }
-    for (uint32_t i = 0; i < corners; i++) {
-        if (vec3_length(s->normal[i]) > 0.5f) {
-            out[i] = s->normal[i];
-            continue;
+    // At each point, corners that a chain of smooth edges joins share one normal: faces do not
+    // choose their own neighbours, so a rounded thing keeps one vertex per point.
+    for (uint32_t p = 0; p < table.count; p++) {
+        uint32_t n = 0;
+        for (uint32_t i = head[p]; i != UINT32_MAX; i = next[i]) around[n++] = i;
+        for (uint32_t a = 0; a < n; a++) group[a] = a;
+        for (uint32_t a = 0; a < n; a++) {
+            for (uint32_t b = 0; b < a; b++) {
+                uint32_t t = around[a] / 3, u = around[b] / 3, from = group[a], to = group[b];
+                float limit = fmaxf(crease_cos[t], crease_cos[u]);
+                if (s->crease_deg[t] & CREASE_VALLEYS && is_valley(s, around[a], around[b], face))
+                    limit = fmaxf(limit, VALLEY_COS);
+                if (from == to || vec3_dot(face[t], face[u]) < limit) continue;
+                for (uint32_t c = 0; c < n; c++)
+                    if (group[c] == from) group[c] = to;
+            }
         }
-        Vec3 sum = vec3(0, 0, 0);
-        for (uint32_t j = head[point[i]]; j != UINT32_MAX; j = next[j]) {
-            if (vec3_dot(face[i / 3], face[j / 3]) < crease_cos) continue;
-            const Vec3 *p = s->position + (j / 3) * 3;
-            sum = vec3_mad(sum, face[j / 3], corner_angle(p, (int)(j % 3)));
+        for (uint32_t a = 0; a < n; a++) {
+            Vec3 sum = vec3(0, 0, 0);
+            for (uint32_t b = 0; b < n; b++) {
+                if (group[b] != group[a]) continue;
+                uint32_t t = around[b] / 3;
+                float weight = corner_angle(s->position + t * 3, (int)(around[b] % 3));
+                sum = vec3_mad(sum, face[t], weight);
+            }
+            bool given = vec3_length(s->normal[around[a]]) > 0.5f;
+            out[around[a]] = given ? s->normal[around[a]] : vec3_normalize(sum);
         }
-        out[i] = vec3_normalize(sum);
     }
     keys_free(&table);
     free(point);
     free(next);
     free(head);
     free(face);
+    free(crease_cos);
+    free(around);
+    free(group);
 }
 
 // Tangent of a triangle: direction of growing u. The sign says whether growing v (upwards) agrees
@@ -215,6 +258,7 @@ static void finish_tangent(Vertex *v) {
 Mesh soup_build(const Soup *s, float crease_deg) {
     typedef struct Key {
         int32_t position[3], normal[3], uv[2], sign, material;
+        uint32_t tint;
     } Key;
     uint32_t corners = s->triangle_count * 3;
     Mesh m = {0};
@@ -227,26 +271,29 @@ Mesh soup_build(const Soup *s, float crease_deg) {
     // One pass per material keeps each primitive's vertices together.
     for (int mat = 0; mat < MESH_MATERIALS_MAX; mat++) {
         m.first[mat] = m.index_count;
+        bool textured = mat < MAT_COUNT && material_get(mat)->texture >= 0;
         for (uint32_t t = 0; t < s->triangle_count; t++) {
             if (s->material[t] != mat) continue;
             Vec3 tangent;
             float sign = triangle_tangent(s->position + t * 3, s->uv + t * 3, &tangent);
+            if (!textured) sign = 1;
             for (uint32_t k = 0; k < 3; k++) {
                 uint32_t i = t * 3 + k;
                 Vec3 p = s->position[i], n = normals[i];
-                Vec2 uv = s->uv[i];
+                Vec2 uv = textured ? s->uv[i] : vec2(0, 0);
                 Key key = {{(int32_t)lrintf(p.x / WELD_M), (int32_t)lrintf(p.y / WELD_M),
                             (int32_t)lrintf(p.z / WELD_M)},
                            {(int32_t)lrintf(n.x * 512), (int32_t)lrintf(n.y * 512),
                             (int32_t)lrintf(n.z * 512)},
                            {(int32_t)lrintf(uv.x * 4096), (int32_t)lrintf(uv.y * 4096)},
                            (int32_t)sign,
-                           mat};
+                           mat,
+                           s->tint[t]};
                 uint32_t number = keys_find(&table, &key);
                 Vertex *v = m.vertices + number;
                 if (number == m.vertex_count) {
                     m.vertex_count++;
-                    *v = (Vertex){p, n, {0, 0, 0, sign}, {uv.x, 1 - uv.y}};
+                    *v = (Vertex){p, n, {0, 0, 0, sign}, {uv.x, 1 - uv.y}, s->tint[t]};
                 }
                 float w = corner_angle(s->position + t * 3, (int)k);
                 v->tangent[0] += tangent.x * w;

@@ -15,11 +15,13 @@
 #include <stdint.h>
 
 #define MESH_MATERIALS_MAX 64
+#define CREASE_VALLEYS     128 // added to an angle
 
 typedef struct Vertex {
     Vec3 position, normal;
     float tangent[4]; // bitangent = cross(normal, tangent.xyz) * tangent.w, glTF's convention
     Vec2 uv;          // v grows downwards, as in the image
+    uint32_t tint;    // linear RGBA8, red lowest
 } Vertex;
 
 // Indices of material m are indices[first[m] .. first[m] + count[m]).
@@ -30,23 +32,32 @@ typedef struct Mesh {
     uint32_t first[MESH_MATERIALS_MAX], count[MESH_MATERIALS_MAX];
 } Mesh;
 
-// Columns have three rows per triangle. `normal` is zero where soup_build shall compute it.
+// The first three columns have three rows per triangle. `normal` is zero where soup_build shall
+// compute it.
 typedef struct Soup {
     Vec3 *position;
     Vec3 *normal;
     Vec2 *uv; // here v grows upwards
     uint8_t *material;
+    uint8_t *crease_deg; // 0: the whole mesh's; with CREASE_VALLEYS
+    uint32_t *tint;
     uint32_t triangle_count, triangle_cap;
     Affine transform;
-    int material_now;
-    float tile_m; // metres that one texture repeat spans, from the material
+    int surface_now;
+    float tile_m; // metres that one texture repeat spans, from the surface
+    uint8_t crease_now_deg;
 } Soup;
 
 void soup_init(Soup *s);
 void soup_free(Soup *s);
 
-// Sets the material of the triangles that follow.
-void soup_use(Soup *s, int material);
+// Sets the surface (materials.h) of the triangles that follow: their material and tint.
+void soup_use(Soup *s, int surface);
+
+// Triangles that follow are smooth where they meet each other at less than crease_deg; 0 goes back
+// to the angle that soup_build gets. soup_carve rounds ridges only and keeps valleys sharp.
+void soup_smooth(Soup *s, int crease_deg);
+void soup_carve(Soup *s, int crease_deg);
 
 // Counter-clockwise seen from outside, in the current transform's space; a mirroring transform
 // keeps faces outward. uv in texture repeats. Triangles without area are dropped.

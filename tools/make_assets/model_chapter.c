@@ -24,12 +24,12 @@ static const Vault ROOM_VAULT = {-BAY / 2, BAY / 2, -BAY / 2, BAY / 2, SPRING, R
 static int add_vault_bay(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_VAULT);
-    carve_vault_webs(&s, &ROOM_VAULT, 12);
+    soup_use(&s, TINT_VAULT);
+    carve_vault_webs(&s, &ROOM_VAULT, 8);
     soup_use(&s, MAT_CARVED);
-    carve_vault_diagonals(&s, &ROOM_VAULT, 0.14f, 0.15f, 12);
-    carve_vault_rib_z(&s, &ROOM_VAULT, -BAY / 2, 0.22f, 0.16f, 12);
-    carve_vault_rib_x(&s, &ROOM_VAULT, -BAY / 2, 0.22f, 0.16f, 12);
+    carve_vault_diagonals(&s, &ROOM_VAULT, 0.14f, 0.15f, 8);
+    carve_vault_rib_z(&s, &ROOM_VAULT, -BAY / 2, 0.22f, 0.16f, 8);
+    carve_vault_rib_x(&s, &ROOM_VAULT, -BAY / 2, 0.22f, 0.16f, 8);
     return model_add_mesh(m, "vault_bay", &s, 40);
 }
 
@@ -40,12 +40,11 @@ static int add_column(Model *m) {
     Vec2 plinth[3] = {{0.34f, 0}, {0.34f, 0.14f}, {0.2f, 0.16f}};
     shape_lathe(&s, plinth, 3, 8, 22.5f, 360);
     carve_column(&s, vec3(0, 0.16f, 0), SPRING - 0.08f, 0.15f, 0);
-    Vec2 abacus[5] = {{0, SPRING - 0.09f},
-                      {0.27f, SPRING - 0.09f},
+    Vec2 abacus[4] = {{0.22f, SPRING - 0.09f},
                       {0.33f, SPRING - 0.04f},
                       {0.33f, SPRING + 0.02f},
                       {0, SPRING + 0.02f}};
-    shape_lathe(&s, abacus, 5, 8, 22.5f, 360);
+    shape_lathe(&s, abacus, 4, 8, 22.5f, 360);
     return model_add_mesh(m, "column", &s, 40);
 }
 
@@ -60,8 +59,8 @@ static int add_shaft(Model *m) {
 static const Arch LIGHT = {0.45f, 2.6f, 0.75f};
 
 static void add_glass(Soup *s, const Arch *a, float y0, float z, float facing, float width) {
-    for (int i = 0; i < 10; i++) {
-        Vec2 p = arch_point(a, 0, (float)i / 10), q = arch_point(a, 0, (float)(i + 1) / 10);
+    for (int i = 0; i < 8; i++) {
+        Vec2 p = arch_point(a, 0, (float)i / 8), q = arch_point(a, 0, (float)(i + 1) / 8);
         float k = 1 / width;
         Vec3 c[4] = {vec3(p.x, y0, z), vec3(q.x, y0, z), vec3(q.x, q.y, z), vec3(p.x, p.y, z)};
         Vec2 t[4];
@@ -76,30 +75,29 @@ static void add_glass(Soup *s, const Arch *a, float y0, float z, float facing, f
 // One bay of side wall, inner face at z = 0 looking to -z, outer face at z = 0.6, x centred. One
 // lancet shows on both faces; a seat runs along its foot.
 static int add_window_bay(Model *m) {
-    static const Vec2 INSIDE[5] = {
-        {0.0f, 0.32f}, {0.0f, 0.26f}, {0.2f, 0.02f}, {0.24f, -0.04f}, {0.26f, 0.02f}};
-    static const Vec2 OUTSIDE[3] = {{0.12f, 0.62f}, {0.1f, 0.56f}, {0.0f, 0.34f}};
+    static const Vec2 INSIDE[4] = {{0.0f, 0.32f}, {0.2f, 0.01f}, {0.24f, -0.04f}, {0.26f, 0.02f}};
+    static const Vec2 OUTSIDE[2] = {{0.12f, 0.62f}, {0.0f, 0.34f}};
     Soup s;
     soup_init(&s);
     float top = EAVES, sill = 1.25f;
     soup_use(&s, MAT_ASHLAR);
     // The spandrel leaves out the jambs' column below the spring; plates fill it under the sill.
-    shape_spandrel(&s, &LIGHT, 0.22f, -BAY / 2, BAY / 2, sill, top, 0, -1, 10);
+    shape_spandrel(&s, &LIGHT, 0.22f, -BAY / 2, BAY / 2, sill, top, 0, -1, 4);
     soup_quad_box(&s, vec3(BAY / 2, 0, 0), vec3(-BAY / 2, 0, 0), vec3(-BAY / 2, sill, 0),
                   vec3(BAY / 2, sill, 0));
     shape_box(&s, vec3(-BAY / 2, 0, -0.4f), vec3(BAY / 2, 0.42f, 0), SKIP_FRONT | SKIP_BOTTOM);
-    soup_use(&s, MAT_ASHLAR_DARK);
-    shape_spandrel(&s, &LIGHT, 0.11f, -BAY / 2, BAY / 2, sill, top, WALL, 1, 10);
+    soup_use(&s, TINT_ASHLAR_DARK);
+    shape_spandrel(&s, &LIGHT, 0.11f, -BAY / 2, BAY / 2, sill, top, WALL, 1, 4);
     soup_quad_box(&s, vec3(-BAY / 2, -0.1f, WALL), vec3(BAY / 2, -0.1f, WALL),
                   vec3(BAY / 2, sill, WALL), vec3(-BAY / 2, sill, WALL));
     shape_taper_box(&s, vec3(-BAY / 2 - 0.25f, -0.1f, WALL),
                     vec3(-BAY / 2 + 0.25f, 4.6f, WALL + 0.5f), 0, 0.12f, SKIP_BACK | SKIP_BOTTOM);
     soup_use(&s, MAT_CARVED);
     shape_box(&s, vec3(-BAY / 2, 0.42f, -0.44f), vec3(BAY / 2, 0.5f, 0), SKIP_FRONT | SKIP_ENDS);
-    shape_arch_moulding(&s, &LIGHT, INSIDE, 5, 10, 0, -1);
-    shape_jambs(&s, &LIGHT, INSIDE, 5, sill);
-    shape_arch_moulding(&s, &LIGHT, OUTSIDE, 3, 10, 0, -1);
-    shape_jambs(&s, &LIGHT, OUTSIDE, 3, sill);
+    shape_arch_moulding(&s, &LIGHT, INSIDE, 4, 8, 0, -1);
+    shape_jambs(&s, &LIGHT, INSIDE, 4, sill);
+    shape_arch_moulding(&s, &LIGHT, OUTSIDE, 2, 8, 0, -1);
+    shape_jambs(&s, &LIGHT, OUTSIDE, 2, sill);
     soup_quad_box(&s, vec3(0.7f, sill - 0.06f, -0.04f), vec3(-0.7f, sill - 0.06f, -0.04f),
                   vec3(-0.45f, sill + 0.16f, 0.32f), vec3(0.45f, sill + 0.16f, 0.32f));
     soup_quad_box(&s, vec3(-0.57f, sill - 0.02f, WALL + 0.02f),
@@ -123,16 +121,27 @@ static void add_floor(Soup *s) {
 }
 
 static void add_altar(Soup *s) {
-    soup_use(s, MAT_CARVED_DARK);
-    shape_bevel_box(s, vec3(-2.4f, -0.1f, BACK - 2.9f), vec3(2.4f, 0.14f, BACK - 0.3f), 0.02f);
-    shape_bevel_box(s, vec3(-1.9f, 0.1f, BACK - 2.4f), vec3(1.9f, 0.28f, BACK - 0.3f), 0.02f);
+    soup_use(s, TINT_CARVED_DARK);
+    shape_taper_box(s, vec3(-2.4f, 0, BACK - 2.9f), vec3(2.4f, 0.14f, BACK - 0.3f), 0.02f, 0.02f,
+                    SKIP_BOTTOM);
+    shape_taper_box(s, vec3(-1.9f, 0.14f, BACK - 2.4f), vec3(1.9f, 0.28f, BACK - 0.3f), 0.02f,
+                    0.02f, SKIP_BOTTOM);
     soup_use(s, MAT_CARVED);
     float z0 = BACK - 1.75f, z1 = BACK - 0.95f;
-    shape_bevel_box(s, vec3(-1.05f, 0.28f, z0 + 0.05f), vec3(1.05f, 0.36f, z1 - 0.05f), 0.02f);
+    shape_taper_box(s, vec3(-1.05f, 0.28f, z0 + 0.05f), vec3(1.05f, 0.36f, z1 - 0.05f), 0.02f,
+                    0.02f, SKIP_BOTTOM);
     shape_box(s, vec3(-0.95f, 0.36f, z0 + 0.12f), vec3(0.95f, 1.14f, z1 - 0.1f), SKIP_BOTTOM);
-    for (int i = 0; i < 5; i++)
-        carve_column(s, vec3(-0.88f + 0.44f * (float)i, 0.36f, z0 + 0.09f), 1.13f, 0.045f,
-                     i % 2 ? 1.2f : -1.2f);
+    soup_carve(s, 70);
+    for (int i = 0; i < 5; i++) {
+        static const Vec2 SHAFT[5] = {
+            {0.072f, 0.36f}, {0.045f, 0.45f}, {0.04f, 0.96f}, {0.05f, 0.99f}, {0.078f, 1.13f}};
+        Affine saved = s->transform;
+        Affine place = affine_translation(-0.88f + 0.44f * (float)i, 0, z0 + 0.09f);
+        s->transform = affine_mul(&saved, &place);
+        shape_turn(s, SHAFT, 5, 6);
+        s->transform = saved;
+    }
+    soup_smooth(s, 0);
     for (int i = 0; i < 4; i++)
         carve_rosette(s, vec3(-0.66f + 0.44f * (float)i, 0.74f, z0 + 0.12f), 0.14f, 0.05f, 6, -1);
     soup_use(s, MAT_MARBLE);
@@ -150,11 +159,11 @@ static int add_tapestry(Model *m) {
     Soup s;
     soup_init(&s);
     soup_use(&s, MAT_TAPESTRY);
-    shape_surface(&s, cloth_point, NULL, 28, 4, vec2(1, 1));
-    soup_use(&s, MAT_BRASS);
-    shape_tube(&s, vec3(-0.98f, 3.46f, 0.09f), vec3(0.98f, 3.46f, 0.09f), 0.022f, 0.022f, 8, true);
-    shape_ball(&s, vec3(-1.0f, 3.46f, 0.09f), vec3(0.045f, 0.045f, 0.045f), 8, 6);
-    shape_ball(&s, vec3(1.0f, 3.46f, 0.09f), vec3(0.045f, 0.045f, 0.045f), 8, 6);
+    shape_surface(&s, cloth_point, NULL, 22, 2, vec2(1, 1));
+    soup_use(&s, TINT_BRASS);
+    shape_tube(&s, vec3(-0.98f, 3.46f, 0.09f), vec3(0.98f, 3.46f, 0.09f), 0.022f, 0.022f, 5, false);
+    shape_ball(&s, vec3(-1.0f, 3.46f, 0.09f), vec3(0.045f, 0.045f, 0.045f), 6, 4);
+    shape_ball(&s, vec3(1.0f, 3.46f, 0.09f), vec3(0.045f, 0.045f, 0.045f), 6, 4);
     return model_add_mesh(m, "tapestry", &s, 60);
 }
 
@@ -173,12 +182,12 @@ static void add_roof(Soup *s) {
         soup_quad(s, vec3(over, low, z1), vec3(over, low, z0), vec3(0, RIDGE, z0),
                   vec3(0, RIDGE, z1), vec2(-z1 * k, 0), vec2(-z0 * k, 0), vec2(-z0 * k, length * k),
                   vec2(-z1 * k, length * k));
-        soup_use(s, MAT_WOOD);
+        soup_use(s, TINT_CARVED_DARK);
         soup_quad_box(s, vec3(over, low - 0.08f, z0), vec3(over, low - 0.08f, z1),
                       vec3(0, RIDGE - 0.08f, z1), vec3(0, RIDGE - 0.08f, z0));
         soup_quad_box(s, vec3(over, low - 0.08f, z1), vec3(over, low - 0.08f, z0),
                       vec3(over, low, z0), vec3(over, low, z1));
-        soup_use(s, MAT_ASHLAR_DARK);
+        soup_use(s, TINT_ASHLAR_DARK);
         soup_triangle_box(s, vec3(0, EAVES - 0.4f, BACK + WALL),
                           vec3(edge, EAVES - 0.4f, BACK + WALL),
                           vec3(0, RIDGE - 0.06f, BACK + WALL));
@@ -186,13 +195,13 @@ static void add_roof(Soup *s) {
                           vec3(0, RIDGE - 0.06f, FRONT));
         s->transform = saved;
     }
-    soup_use(s, MAT_CLAY);
-    shape_tube(s, vec3(0, RIDGE - 0.02f, z0), vec3(0, RIDGE - 0.02f, z1), 0.11f, 0.11f, 8, true);
+    soup_use(s, TINT_CARVED_CLAY);
+    shape_tube(s, vec3(0, RIDGE - 0.02f, z0), vec3(0, RIDGE - 0.02f, z1), 0.11f, 0.11f, 6, true);
 }
 
 // The corners between the walls' bays are closed by posts that reach from face to face.
 static void add_corner_posts(Soup *s) {
-    soup_use(s, MAT_ASHLAR_DARK);
+    soup_use(s, TINT_ASHLAR_DARK);
     for (int side = -1; side <= 1; side += 2) {
         float x0 = side < 0 ? -HALF_WIDTH - WALL : HALF_WIDTH, x1 = x0 + WALL;
         shape_box(s, vec3(x0, -0.1f, BACK), vec3(x1, EAVES, BACK + WALL), SKIP_BOTTOM);

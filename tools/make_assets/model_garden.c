@@ -32,7 +32,7 @@ static Vec3 quarter_point(const void *context, float u, float v) {
 }
 
 static void add_grass(Soup *s) {
-    const int nu = 22, nv = 12;
+    const int nu = 14, nv = 7;
     soup_use(s, MAT_GRASS);
     for (int j = 0; j < nv; j++) {
         for (int i = 0; i < nu; i++) {
@@ -46,7 +46,7 @@ static void add_grass(Soup *s) {
 
 // A kerb around the quarter: a closed sweep whose profile is its cross-section.
 static void add_kerb(Soup *s) {
-    enum { STEPS = 12 };
+    enum { STEPS = 8 };
     SweepFrame frames[STEPS + 6];
     Vec3 path[STEPS + 6];
     int n = 0;
@@ -68,10 +68,10 @@ static void add_kerb(Soup *s) {
         float miter = 1 / fmaxf(0.5f, vec3_dot(o, o1));
         frames[i] = (SweepFrame){path[i], vec3_scale(o, miter), vec3(0, 1, 0)};
     }
-    static const Vec2 PROFILE[6] = {{0.08f, 0},       {0.08f, 0.09f},   {0.055f, 0.115f},
-                                    {-0.05f, 0.115f}, {-0.075f, 0.09f}, {-0.075f, 0}};
+    static const Vec2 PROFILE[4] = {
+        {0.08f, 0}, {0.06f, 0.115f}, {-0.06f, 0.115f}, {-0.075f, 0.03f}};
     soup_use(s, MAT_CARVED_DARK);
-    shape_sweep(s, frames, n, PROFILE, 6, false);
+    shape_sweep(s, frames, n, PROFILE, 4, false);
 }
 
 // A clipped hedge along a polyline; noise dents it, since no gardener is that exact.
@@ -81,7 +81,7 @@ static void add_hedge(Soup *s, const Vec3 *points, int count, float half, float 
     int n = 0;
     for (int k = 0; k + 1 < count; k++) {
         float length = vec3_length(vec3_sub(points[k + 1], points[k]));
-        int steps = (int)(length / 0.75f) + 1;
+        int steps = (int)(length / 1.3f) + 1;
         for (int i = 0; i < steps + (k + 2 == count ? 1 : 0) && n < FRAMES_MAX; i++) {
             Vec3 d0 = vec3_normalize(vec3_sub(points[k + 1], points[k])), d1 = d0;
             if (i == 0 && k > 0) d0 = vec3_normalize(vec3_sub(points[k], points[k - 1]));
@@ -137,7 +137,7 @@ static Vec3 topiary_point(const void *context, float u, float v) {
 static void add_topiary(Soup *s, float x, float z, float radius) {
     float ball[3] = {x, z, radius};
     soup_use(s, MAT_HEDGE);
-    shape_surface(s, topiary_point, ball, 16, 10, vec2(3, 2));
+    shape_surface(s, topiary_point, ball, 12, 7, vec2(3, 2));
 }
 
 static void add_bed(Soup *s) {
@@ -145,13 +145,13 @@ static void add_bed(Soup *s) {
     s->transform = affine_mul(&saved, &place);
     soup_use(s, MAT_SOIL);
     Vec2 soil[3] = {{BED_RADIUS, 0.1f}, {BED_RADIUS * 0.6f, 0.24f}, {0, 0.28f}};
-    shape_turn(s, soil, 3, 20);
+    shape_turn(s, soil, 3, 14);
     soup_use(s, MAT_CARVED_DARK);
     Vec2 rim[4] = {{BED_RADIUS + 0.14f, 0},
                    {BED_RADIUS + 0.14f, 0.2f},
                    {BED_RADIUS - 0.02f, 0.2f},
                    {BED_RADIUS - 0.02f, 0.08f}};
-    shape_turn(s, rim, 4, 20);
+    shape_turn(s, rim, 4, 18);
     s->transform = saved;
 }
 
@@ -160,7 +160,7 @@ void model_make_garden(Model *m) {
     soup_init(&s);
     soup_use(&s, MAT_GRAVEL);
     // Slightly crowned towards the middle, in tiles small enough for per-object light lists.
-    const int n = 8;
+    const int n = 6;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             float x0 = -COURT + 24.0f * (float)i / (float)n, x1 = x0 + 24.0f / (float)n;

@@ -5,7 +5,7 @@
 // Each function's comment says where the flame sits. Called through the table in model.c.
 #include "models.h"
 
-// A flame is a drop that leans with height: bright core material below, orange above.
+// A flame is a drop that leans with height.
 typedef struct Flame {
     Vec3 foot;
     float height, radius, lean;
@@ -22,70 +22,59 @@ static Vec3 flame_point(const void *context, float u, float v) {
 
 static void add_flame(Soup *s, Vec3 foot, float height, float radius, int segments, int rings) {
     Flame f = {foot, height, radius, radius * 0.5f};
-    uint32_t first = s->triangle_count;
     soup_use(s, MAT_FLAME);
-    shape_surface(s, flame_point, &f, segments, rings, vec2(1, 1));
-    for (uint32_t t = first; t < s->triangle_count; t++)
-        if (s->position[t * 3].y < foot.y + height * 0.42f) s->material[t] = MAT_FLAME_CORE;
+    shape_surface(s, flame_point, &f, segments, rings, vec2(0, 0));
 }
 
 // The six-sided cage of both lanterns, centred on the origin, glass 0.11 m in radius.
 static void add_lantern(Soup *s) {
     soup_use(s, MAT_LANTERN_GLASS);
-    Vec2 glass[3] = {{0.085f, -0.13f}, {0.115f, 0.1f}, {0.1f, 0.13f}};
-    shape_turn(s, glass, 3, 6);
-    soup_use(s, MAT_IRON);
+    Vec2 glass[2] = {{0.085f, -0.13f}, {0.115f, 0.12f}};
+    shape_turn(s, glass, 2, 6);
+    soup_use(s, TINT_IRON);
     for (int i = 0; i < 6; i++) {
         float a = (float)i * PI_F / 3;
         shape_tube(s, vec3(0.09f * cosf(a), -0.14f, -0.09f * sinf(a)),
-                   vec3(0.122f * cosf(a), 0.12f, -0.122f * sinf(a)), 0.009f, 0.009f, 4, false);
+                   vec3(0.122f * cosf(a), 0.12f, -0.122f * sinf(a)), 0.01f, 0.01f, 3, false);
     }
-    Vec2 foot[5] = {{0, -0.21f}, {0.02f, -0.2f}, {0.03f, -0.17f}, {0.1f, -0.155f}, {0.1f, -0.13f}};
-    shape_turn(s, foot, 5, 6);
-    Vec2 lid[2] = {{0.1f, -0.13f}, {0, -0.13f}};
-    shape_turn(s, lid, 2, 6);
-    Vec2 roof[7] = {{0.0f, 0.11f},   {0.15f, 0.11f},  {0.15f, 0.13f}, {0.09f, 0.2f},
-                    {0.045f, 0.23f}, {0.045f, 0.27f}, {0, 0.3f}};
-    shape_turn(s, roof, 7, 6);
+    Vec2 foot[3] = {{0, -0.21f}, {0.1f, -0.155f}, {0.1f, -0.125f}};
+    shape_turn(s, foot, 3, 6);
+    Vec2 roof[4] = {{0.1f, 0.11f}, {0.15f, 0.12f}, {0.055f, 0.23f}, {0, 0.3f}};
+    shape_turn(s, roof, 4, 6);
 }
 
 // Post of 2.3 m; the lantern's middle is at y = 2.05.
 void model_make_lantern_post(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_CARVED_DARK);
+    soup_use(&s, TINT_STONE);
     shape_taper_box(&s, vec3(-0.2f, 0, -0.2f), vec3(0.2f, 0.22f, 0.2f), 0.05f, 0.05f, SKIP_BOTTOM);
-    soup_use(&s, MAT_IRON);
-    Vec2 post[9] = {{0.09f, 0.22f}, {0.09f, 0.28f},  {0.05f, 0.34f},
-                    {0.035f, 0.9f}, {0.055f, 0.93f}, {0.035f, 0.97f},
-                    {0.03f, 1.74f}, {0.06f, 1.8f},   {0.05f, 1.86f}};
-    shape_turn(&s, post, 9, 8);
+    soup_use(&s, TINT_IRON);
+    Vec2 post[7] = {{0.09f, 0.22f},  {0.045f, 0.33f}, {0.035f, 0.9f}, {0.06f, 0.94f},
+                    {0.035f, 0.98f}, {0.03f, 1.74f},  {0.06f, 1.86f}};
+    soup_smooth(&s, 75);
+    shape_turn(&s, post, 7, 6);
+    soup_smooth(&s, 0);
     for (int i = 0; i < 4; i++) { // scrolls under the lantern
         float a = (float)i * PI_F / 2 + PI_F / 4;
         shape_tube(&s, vec3(0.03f * cosf(a), 1.62f, 0.03f * sinf(a)),
-                   vec3(0.13f * cosf(a), 1.8f, 0.13f * sinf(a)), 0.01f, 0.01f, 5, false);
+                   vec3(0.13f * cosf(a), 1.8f, 0.13f * sinf(a)), 0.01f, 0.01f, 3, false);
         shape_tube(&s, vec3(0.13f * cosf(a), 1.8f, 0.13f * sinf(a)),
-                   vec3(0.07f * cosf(a), 1.88f, 0.07f * sinf(a)), 0.01f, 0.008f, 5, true);
+                   vec3(0.07f * cosf(a), 1.88f, 0.07f * sinf(a)), 0.01f, 0.008f, 3, false);
     }
     s.transform = affine_translation(0, 2.05f, 0);
     add_lantern(&s);
     model_add_soup(m, "lantern_post", &s);
 }
 
-// The lantern's middle is the origin; its chain rises to y = 1.15.
+// The lantern's middle is the origin; its rod rises to y = 1.15.
 void model_make_lantern_hanging(Model *m) {
     Soup s;
     soup_init(&s);
     add_lantern(&s);
-    soup_use(&s, MAT_IRON);
-    for (int i = 0; i < 8; i++) {
-        Affine stand = affine_turn_x(90), turn = affine_turn_y(i % 2 ? 90.0f : 0.0f);
-        Affine long_link = affine_scaling(0.66f, 1, 1.9f);
-        s.transform = affine_mul(&turn, &stand);
-        s.transform = affine_mul(&s.transform, &long_link);
-        s.transform.t = vec3(0, 0.345f + 0.108f * (float)i, 0);
-        shape_torus(&s, 0.034f, 0.008f, 6, 3);
-    }
+    soup_use(&s, TINT_IRON);
+    shape_tube(&s, vec3(0, 0.29f, 0), vec3(0, 1.16f, 0), 0.009f, 0.009f, 3, false);
+    for (int i = 0; i < 4; i++) shape_octahedron(&s, vec3(0, 0.36f + 0.2f * (float)i, 0), 0.03f);
     model_add_soup(m, "lantern_hanging", &s);
 }
 
@@ -93,30 +82,27 @@ void model_make_lantern_hanging(Model *m) {
 void model_make_torch(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_IRON);
-    shape_taper_box(&s, vec3(-0.05f, -0.16f, 0), vec3(0.05f, 0.2f, 0.02f), 0.01f, 0, SKIP_BACK);
-    shape_tube(&s, vec3(0, -0.08f, 0.01f), vec3(0, -0.02f, 0.13f), 0.013f, 0.013f, 6, false);
-    shape_tube(&s, vec3(0, 0.1f, 0.01f), vec3(0, 0.14f, 0.15f), 0.013f, 0.013f, 6, false);
+    soup_use(&s, TINT_IRON);
+    shape_taper_box(&s, vec3(-0.05f, -0.16f, 0), vec3(0.05f, 0.2f, 0.02f), 0.01f, 0,
+                    SKIP_BACK | SKIP_BOTTOM);
+    shape_tube(&s, vec3(0, -0.08f, 0.01f), vec3(0, -0.02f, 0.13f), 0.015f, 0.015f, 4, false);
+    shape_tube(&s, vec3(0, 0.1f, 0.01f), vec3(0, 0.14f, 0.15f), 0.015f, 0.015f, 4, false);
     Affine tilt = affine_turn_x(12);
     tilt.t = vec3(0, 0.05f, 0.128f);
     s.transform = tilt;
-    Affine ring = affine_translation(0, 0.1f, 0);
-    s.transform = affine_mul(&tilt, &ring);
-    shape_torus(&s, 0.04f, 0.01f, 10, 5);
-    s.transform = tilt;
-    soup_use(&s, MAT_BARK);
+    soup_smooth(&s, 65);
+    Vec2 ring[3] = {{0.03f, 0.085f}, {0.05f, 0.1f}, {0.03f, 0.115f}};
+    shape_turn(&s, ring, 3, 6);
+    soup_use(&s, TINT_BARK);
     Vec2 staff[3] = {{0.0f, -0.3f}, {0.018f, -0.28f}, {0.028f, 0.26f}};
-    shape_turn(&s, staff, 3, 8);
-    soup_use(&s, MAT_IRON);
-    Vec2 cup[5] = {{0.028f, 0.24f}, {0.062f, 0.3f}, {0.07f, 0.37f}, {0.06f, 0.37f}, {0, 0.33f}};
-    shape_turn(&s, cup, 5, 10);
-    soup_use(&s, MAT_EMBER);
-    Vec2 coals[3] = {{0.058f, 0.36f}, {0.04f, 0.385f}, {0, 0.39f}};
-    shape_turn(&s, coals, 3, 8);
+    shape_turn(&s, staff, 3, 6);
+    soup_use(&s, TINT_IRON);
+    Vec2 cup[4] = {{0.028f, 0.24f}, {0.062f, 0.3f}, {0.07f, 0.37f}, {0, 0.35f}};
+    shape_turn(&s, cup, 4, 8);
     s.transform = affine_identity();
-    add_flame(&s, vec3(0, 0.39f, 0.2f), 0.3f, 0.068f, 9, 7);
-    add_flame(&s, vec3(0.03f, 0.41f, 0.225f), 0.17f, 0.04f, 7, 5);
-    add_flame(&s, vec3(-0.035f, 0.4f, 0.19f), 0.14f, 0.035f, 7, 5);
+    add_flame(&s, vec3(0, 0.38f, 0.2f), 0.31f, 0.068f, 6, 5);
+    add_flame(&s, vec3(0.03f, 0.4f, 0.225f), 0.18f, 0.04f, 4, 3);
+    add_flame(&s, vec3(-0.035f, 0.39f, 0.19f), 0.15f, 0.035f, 4, 3);
     model_add_soup(m, "torch", &s);
 }
 
@@ -124,48 +110,45 @@ void model_make_torch(Model *m) {
 void model_make_brazier(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_IRON);
-    Vec2 bowl[7] = {{0, 0.58f},     {0.16f, 0.6f},  {0.27f, 0.68f}, {0.32f, 0.8f},
-                    {0.35f, 0.82f}, {0.31f, 0.82f}, {0.28f, 0.72f}};
-    shape_turn(&s, bowl, 7, 14);
+    soup_use(&s, TINT_IRON);
+    soup_smooth(&s, 65);
+    Vec2 bowl[6] = {{0, 0.58f},     {0.16f, 0.6f},  {0.27f, 0.68f},
+                    {0.35f, 0.82f}, {0.31f, 0.82f}, {0.28f, 0.74f}};
+    shape_turn(&s, bowl, 6, 10);
     for (int i = 0; i < 3; i++) {
         float a = (float)i * 2 * PI_F / 3;
         Vec3 foot = vec3(0.34f * cosf(a), 0, 0.34f * sinf(a));
         Vec3 knee = vec3(0.15f * cosf(a), 0.36f, 0.15f * sinf(a));
         Vec3 top = vec3(0.27f * cosf(a), 0.7f, 0.27f * sinf(a));
-        shape_tube(&s, foot, knee, 0.022f, 0.018f, 6, true);
-        shape_tube(&s, knee, top, 0.018f, 0.018f, 6, false);
-        shape_ball(&s, vec3(foot.x, 0.025f, foot.z), vec3(0.04f, 0.025f, 0.04f), 8, 4);
+        shape_tube(&s, foot, knee, 0.024f, 0.018f, 4, false);
+        shape_tube(&s, knee, top, 0.018f, 0.018f, 4, false);
     }
     Affine ring = affine_translation(0, 0.36f, 0);
     s.transform = ring;
-    shape_torus(&s, 0.15f, 0.013f, 14, 5);
+    shape_torus(&s, 0.15f, 0.015f, 9, 3);
     s.transform = affine_identity();
     soup_use(&s, MAT_EMBER);
     Vec2 coals[4] = {{0.29f, 0.75f}, {0.2f, 0.8f}, {0.1f, 0.83f}, {0, 0.84f}};
-    shape_turn(&s, coals, 4, 9);
+    shape_turn(&s, coals, 4, 8);
+    soup_smooth(&s, 0);
     for (int i = 0; i < 7; i++) {
         float a = (float)i * 2.4f, r = 0.07f * sqrtf((float)i);
-        shape_icosahedron(&s, vec3(r * cosf(a), 0.82f, r * sinf(a)), 0.055f);
+        shape_octahedron(&s, vec3(r * cosf(a), 0.82f, r * sinf(a)), 0.06f);
     }
-    add_flame(&s, vec3(0, 0.82f, 0), 0.48f, 0.13f, 10, 7);
-    add_flame(&s, vec3(0.13f, 0.8f, 0.05f), 0.3f, 0.085f, 8, 6);
-    add_flame(&s, vec3(-0.1f, 0.8f, 0.1f), 0.34f, 0.09f, 8, 6);
-    add_flame(&s, vec3(-0.04f, 0.8f, -0.14f), 0.27f, 0.08f, 8, 6);
+    add_flame(&s, vec3(0, 0.82f, 0), 0.48f, 0.13f, 7, 5);
+    add_flame(&s, vec3(0.13f, 0.8f, 0.05f), 0.3f, 0.085f, 5, 4);
+    add_flame(&s, vec3(-0.1f, 0.8f, 0.1f), 0.34f, 0.09f, 5, 4);
+    add_flame(&s, vec3(-0.04f, 0.8f, -0.14f), 0.27f, 0.08f, 5, 4);
     model_add_soup(m, "brazier", &s);
 }
 
-static void add_candle(Soup *s, Vec3 foot, float height, float radius) {
+static void add_candle(Soup *s, Vec3 foot, float height, float radius, int wax) {
     Affine saved = s->transform, place = affine_translation(foot.x, foot.y, foot.z);
     s->transform = affine_mul(&saved, &place);
-    soup_use(s, MAT_WAX);
-    Vec2 wax[5] = {{radius * 1.1f, 0},
-                   {radius, 0.02f},
-                   {radius * 0.95f, height - 0.012f},
-                   {radius * 0.7f, height},
-                   {0, height - 0.008f}};
-    shape_turn(s, wax, 5, 8);
-    add_flame(s, vec3(0, height + 0.006f, 0), 0.05f, 0.011f, 6, 4);
+    soup_use(s, wax);
+    Vec2 body[3] = {{radius * 1.08f, 0}, {radius * 0.95f, height}, {0, height - 0.004f}};
+    shape_turn(s, body, 3, 5);
+    add_flame(s, vec3(0, height + 0.002f, 0), 0.055f, 0.013f, 4, 3);
     s->transform = saved;
 }
 
@@ -173,11 +156,10 @@ static void add_candle(Soup *s, Vec3 foot, float height, float radius) {
 void model_make_candle(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_BRASS);
-    Vec2 dish[6] = {{0, 0},          {0.06f, 0.002f}, {0.075f, 0.016f},
-                    {0.07f, 0.016f}, {0.05f, 0.008f}, {0, 0.008f}};
-    shape_turn(&s, dish, 6, 9);
-    add_candle(&s, vec3(0, 0.006f, 0), 0.15f, 0.022f);
+    soup_use(&s, TINT_DISH);
+    Vec2 dish[3] = {{0.05f, 0}, {0.075f, 0.018f}, {0, 0.008f}};
+    shape_turn(&s, dish, 3, 6);
+    add_candle(&s, vec3(0, 0.006f, 0), 0.15f, 0.022f, MAT_WAX);
     model_add_soup(m, "candle", &s);
 }
 
@@ -185,23 +167,25 @@ void model_make_candle(Model *m) {
 void model_make_candles(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_IRON);
+    soup_use(&s, TINT_IRON);
     Vec2 stem[7] = {{0.17f, 0},     {0.16f, 0.03f},  {0.03f, 0.07f}, {0.022f, 0.6f},
                     {0.04f, 0.63f}, {0.022f, 0.66f}, {0.018f, 1.1f}};
-    shape_turn(&s, stem, 7, 9);
+    soup_smooth(&s, 70);
+    shape_turn(&s, stem, 7, 6);
+    soup_smooth(&s, 0);
     for (int i = 0; i < 7; i++) {
         float a = (float)i * PI_F / 3, r = i < 6 ? 0.22f : 0;
         Vec3 top = vec3(r * cosf(a), i < 6 ? 1.16f : 1.24f, r * sinf(a));
-        shape_tube(&s, vec3(0, 1.02f, 0), vec3_sub(top, vec3(0, 0.01f, 0)), 0.011f, 0.011f, 5,
+        shape_tube(&s, vec3(0, 1.02f, 0), vec3_sub(top, vec3(0, 0.01f, 0)), 0.012f, 0.012f, 3,
                    false);
         Affine place = affine_translation(top.x, top.y, top.z);
         s.transform = place;
-        soup_use(&s, MAT_BRASS);
-        Vec2 dish[4] = {{0, -0.012f}, {0.036f, 0}, {0.045f, 0.012f}, {0, 0.006f}};
-        shape_turn(&s, dish, 4, 8);
+        soup_use(&s, TINT_BRASS);
+        Vec2 dish[3] = {{0.02f, -0.012f}, {0.045f, 0.012f}, {0, 0.006f}};
+        shape_turn(&s, dish, 3, 6);
         s.transform = affine_identity();
-        add_candle(&s, top, 0.1f + 0.07f * (float)((i * 5) % 3) / 2, 0.018f);
-        soup_use(&s, MAT_IRON);
+        add_candle(&s, top, 0.1f + 0.07f * (float)((i * 5) % 3) / 2, 0.018f, TINT_WAX);
+        soup_use(&s, TINT_IRON);
     }
     model_add_soup(m, "candles", &s);
 }
@@ -216,8 +200,8 @@ void model_make_crystal(Model *m) {
         float h = i ? 0.24f + 0.06f * (float)(i % 4) : 0.6f, r = i ? 0.045f : 0.075f;
         Affine turn = affine_turn_y(a * 57.29578f), tilt = affine_turn_x(lean);
         s.transform = affine_mul(&turn, &tilt);
-        Vec2 shard[4] = {{r * 0.6f, -0.03f}, {r, h * 0.62f}, {r * 0.8f, h * 0.72f}, {0, h}};
-        shape_turn(&s, shard, 4, 6);
+        Vec2 shard[3] = {{r * 0.6f, -0.03f}, {r, h * 0.65f}, {0, h}};
+        shape_turn(&s, shard, 3, 5);
     }
     model_add_soup(m, "crystal", &s);
 }
@@ -226,7 +210,11 @@ void model_make_firefly(Model *m) {
     Soup s;
     soup_init(&s);
     soup_use(&s, MAT_FIREFLY);
-    shape_icosahedron(&s, vec3(0, 0, 0), 0.02f);
+    soup_smooth(&s, 120);
+    // Tilted, so that it is no diamond or square from the sides that are seen.
+    Affine turn = affine_turn_y(20), tip = affine_turn_x(35);
+    s.transform = affine_mul(&tip, &turn);
+    shape_octahedron(&s, vec3(0, 0, 0), 0.02f);
     model_add_soup(m, "firefly", &s);
 }
 

@@ -27,12 +27,13 @@ void model_make_tree(Model *m) {
     soup_init(&s);
     soup_use(&s, MAT_BARK);
     Vec2 trunk[4] = {{0.24f, -0.05f}, {0.15f, 0.16f}, {0.12f, 0.5f}, {0.1f, 0.8f}};
-    shape_turn(&s, trunk, 4, 9);
+    shape_turn(&s, trunk, 4, 6);
     soup_use(&s, MAT_HEDGE);
-    shape_surface(&s, cypress_point, NULL, 11, 12, vec2(4, 8));
+    soup_smooth(&s, 80);
+    shape_surface(&s, cypress_point, NULL, 9, 9, vec2(4, 8));
     soup_use(&s, MAT_LEAF_CYPRESS);
     uint32_t first = s.triangle_count;
-    const int cards = 110;
+    const int cards = 96;
     for (int i = 0; i < cards; i++) {
         float t = ((float)i + 0.5f) / (float)cards;
         float angle = (float)i * 2.39996f, y = 0.55f + 5.5f * powf(t, 1.08f);
@@ -71,18 +72,14 @@ static Vec3 bush_point(const void *context, float u, float v) {
 void model_make_bush(Model *m) {
     Soup s;
     soup_init(&s);
-    soup_use(&s, MAT_BARK);
-    for (int i = 0; i < 3; i++) {
-        float a = (float)i * 2.1f;
-        shape_tube(&s, vec3(0.04f * cosf(a), -0.03f, 0.04f * sinf(a)),
-                   vec3(0.16f * cosf(a), 0.42f, 0.16f * sinf(a)), 0.025f, 0.015f, 5, false);
-    }
     soup_use(&s, MAT_HEDGE);
-    shape_surface(&s, bush_point, NULL, 9, 6, vec2(3, 1.5f));
+    shape_tube(&s, vec3(0, -0.03f, 0), vec3(0.02f, 0.42f, 0.03f), 0.05f, 0.04f, 4, false);
+    soup_smooth(&s, 80);
+    shape_surface(&s, bush_point, NULL, 7, 5, vec2(3, 1.5f));
     soup_use(&s, MAT_LEAF_ROSE);
     uint32_t first = s.triangle_count;
-    for (int i = 0; i < 26; i++) {
-        float angle = (float)i * 2.39996f, h = ((float)i + 0.5f) / 26;
+    for (int i = 0; i < 24; i++) {
+        float angle = (float)i * 2.39996f, h = ((float)i + 0.5f) / 24;
         float lat = asinf(h * 1.5f - 0.5f);
         Vec3 d = vec3(cosf(angle) * cosf(lat), sinf(lat), -sinf(angle) * cosf(lat));
         Vec3 right = vec3_normalize(vec3_cross(vec3(0.1f, 1, 0.2f), d));

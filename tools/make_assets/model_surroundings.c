@@ -8,7 +8,7 @@
 
 #define INNER       16.3f // just inside the outer walls' outer faces
 #define FAR_HILLS   118.0f
-#define LAND_AROUND 64
+#define LAND_AROUND 48
 #define LAND_ACROSS 9
 
 static float hill_height(float angle, float seed) {
@@ -48,7 +48,7 @@ static void add_land(Soup *s) {
 // A second, lower-detail range in front of the far one: cones of dark trees.
 static void add_far_trees(Soup *s) {
     soup_use(s, MAT_HILL);
-    for (int i = 0; i < 110; i++) {
+    for (int i = 0; i < 80; i++) {
         // On the land's own vertices, since between them the land is flat and would let trees
         // float.
         float u = floorf(noise_random((uint32_t)i, 1, 65) * LAND_AROUND) / LAND_AROUND;
@@ -61,8 +61,8 @@ static void add_far_trees(Soup *s) {
         }
         Affine place = affine_translation(p.x, p.y - 0.4f, p.z);
         s->transform = place;
-        Vec2 crown[4] = {{r, -1}, {r, h * 0.25f}, {r * 0.72f, h * 0.6f}, {0, h}};
-        shape_turn(s, crown, 4, 6);
+        Vec2 crown[3] = {{r * 0.9f, -1}, {r, h * 0.35f}, {0, h}};
+        shape_turn(s, crown, 3, 5);
     }
     s->transform = affine_identity();
 }
@@ -82,6 +82,6 @@ void model_make_moon(Model *m) {
     soup_use(&s, MAT_MOON);
     float yaw = -65 * PI_F / 180, pitch = 40 * PI_F / 180;
     Vec3 d = vec3(sinf(yaw) * cosf(pitch), sinf(pitch), cosf(yaw) * cosf(pitch));
-    shape_ball(&s, vec3_scale(d, 150), vec3(3.4f, 3.4f, 3.4f), 20, 12);
+    shape_ball(&s, vec3_scale(d, 150), vec3(3.4f, 3.4f, 3.4f), 18, 8);
     model_add_soup(m, "moon", &s);
 }

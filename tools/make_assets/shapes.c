@@ -71,6 +71,19 @@ void shape_bevel_box(Soup *s, Vec3 lo, Vec3 hi, float b) {
     }
 }
 
+void shape_post(Soup *s, Vec3 lo, Vec3 hi, float b, bool open) {
+    const float x[8] = {lo.x + b, hi.x - b, hi.x, hi.x, hi.x - b, lo.x + b, lo.x, lo.x};
+    const float z[8] = {hi.z, hi.z, hi.z - b, lo.z + b, lo.z, lo.z, lo.z + b, hi.z - b};
+    for (int i = 0; i < 8; i++) {
+        int k = (i + 1) % 8;
+        soup_quad_box(s, vec3(x[i], lo.y, z[i]), vec3(x[k], lo.y, z[k]), vec3(x[k], hi.y, z[k]),
+                      vec3(x[i], hi.y, z[i]));
+        if (!open && i > 0 && i < 7)
+            soup_triangle_box(s, vec3(x[0], hi.y, z[0]), vec3(x[i], hi.y, z[i]),
+                              vec3(x[k], hi.y, z[k]));
+    }
+}
+
 void shape_lathe(Soup *s, const Vec2 *profile, int count, int segments, float start_deg,
                  float sweep_deg) {
     float widest = 0, along = 0;
@@ -197,22 +210,13 @@ void shape_ball(Soup *s, Vec3 center, Vec3 radius, int segments, int rings) {
     s->transform = saved;
 }
 
-void shape_icosahedron(Soup *s, Vec3 c, float radius) {
-    static const unsigned char FACES[20][3] = {
-        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-    const float g = 1.618034f, k = radius / sqrtf(1 + g * g);
-    const float corners[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                                  {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                                  {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    for (int f = 0; f < 20; f++) {
-        Vec3 p[3];
-        for (int i = 0; i < 3; i++) {
-            const float *q = corners[FACES[f][i]];
-            p[i] = vec3(c.x + q[0] * k, c.y + q[1] * k, c.z + q[2] * k);
-        }
-        soup_triangle_box(s, p[0], p[1], p[2]);
+void shape_octahedron(Soup *s, Vec3 c, float radius) {
+    for (int i = 0; i < 8; i++) {
+        Vec3 x = vec3(c.x + (i & 1 ? -radius : radius), c.y, c.z);
+        Vec3 y = vec3(c.x, c.y + (i & 2 ? -radius : radius), c.z);
+        Vec3 z = vec3(c.x, c.y, c.z + (i & 4 ? -radius : radius));
+        bool flip = (i & 1) ^ (i >> 1 & 1) ^ (i >> 2 & 1);
+        soup_triangle(s, x, flip ? z : y, flip ? y : z, vec2(0, 0), vec2(0, 0), vec2(0, 0));
     }
 }
 

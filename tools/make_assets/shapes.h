@@ -24,6 +24,9 @@ void shape_box(Soup *s, Vec3 lo, Vec3 hi, unsigned skip);
 // A box whose edges are cut by `bevel`: the cut edges catch light, which is what tells stone.
 void shape_bevel_box(Soup *s, Vec3 lo, Vec3 hi, float bevel);
 
+// A post whose four upright edges are cut by `bevel`; no bottom, and no top where `open`.
+void shape_post(Soup *s, Vec3 lo, Vec3 hi, float bevel, bool open);
+
 // A box that narrows upwards: `inset_x`, `inset_z` per side at the top.
 void shape_taper_box(Soup *s, Vec3 lo, Vec3 hi, float inset_x, float inset_z, unsigned skip);
 
@@ -56,7 +59,7 @@ void shape_tube(Soup *s, Vec3 from, Vec3 to, float r0, float r1, int segments, b
 void shape_torus(Soup *s, float major, float minor, int segments, int sides);
 
 void shape_ball(Soup *s, Vec3 center, Vec3 radius, int segments, int rings);
-void shape_icosahedron(Soup *s, Vec3 center, float radius);
+void shape_octahedron(Soup *s, Vec3 center, float radius);
 
 // One quad; texture corners (0,0)..(1,1), seen from cross(right, up).
 void shape_card(Soup *s, Vec3 center, Vec3 half_right, Vec3 half_up);

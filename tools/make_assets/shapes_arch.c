@@ -16,7 +16,7 @@ float arch_rise(const Arch *a, float offset) { return arch_point(a, offset, 0.5f
 
 void shape_arch_moulding(Soup *s, const Arch *a, const Vec2 *profile, int count, int segments,
                          int stones, int other) {
-    int material = s->material_now;
+    int surface = s->surface_now;
     float across = 0, k = 1 / s->tile_m;
     for (int j = 0; j + 1 < count; j++) {
         Vec2 p = profile[j], q = profile[j + 1];
@@ -29,7 +29,7 @@ void shape_arch_moulding(Soup *s, const Arch *a, const Vec2 *profile, int count,
             float step = sqrtf((p1.x - p0.x) * (p1.x - p0.x) + (p1.y - p0.y) * (p1.y - p0.y));
             if (other >= 0) {
                 bool odd = ((i * stones) / segments) & 1;
-                soup_use(s, odd ? other : material);
+                soup_use(s, odd ? other : surface);
             }
             soup_quad(s, vec3(p0.x, p0.y, p.y), vec3(q0.x, q0.y, q.y), vec3(q1.x, q1.y, q.y),
                       vec3(p1.x, p1.y, p.y), vec2(across * k, along * k),
@@ -40,7 +40,7 @@ void shape_arch_moulding(Soup *s, const Arch *a, const Vec2 *profile, int count,
         }
         across += width;
     }
-    soup_use(s, material);
+    soup_use(s, surface);
 }
 
 static void quad_facing(Soup *s, float facing, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
