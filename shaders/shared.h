@@ -90,7 +90,7 @@ typedef struct MeshVertex {
 #define LIGHT_BLOCK_CAP   2048
 #define SPOT_BLOCK_CAP    4096
 #define DIRECTIONALS_CAP  8
-#define GEOMETRY_PUSH_SIZE 16
+#define OVERLAY_PUSH_SIZE 16 // vec2 1 / size, padded: overlay and present
 
 SHARED_STRUCT(FrameRecord) {
     mat4 view_projection; // world to clip, reversed depth, infinite far

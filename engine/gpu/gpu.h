@@ -167,7 +167,6 @@ typedef struct GpuBinding {
     u64 offset;       // into the buffer, a multiple of 256
     GpuTexture texture;
     GpuSampler sampler;
-    bool depth; // texture is a depth texture (its sampled layout)
 } GpuBinding;
 typedef struct GpuBindGroupDesc {
     const char *label;

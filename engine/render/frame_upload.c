@@ -117,22 +117,19 @@ static bool frame_group_update(Renderer *renderer) {
         u32 binding;
         RenderResource resource;
         GpuSampler sampler;
-        bool depth;
     } images[] = {
-        {BINDING_GBUFFER_ALBEDO, RESOURCE_GBUFFER_ALBEDO, renderer->sampler_nearest, false},
-        {BINDING_GBUFFER_NORMAL, RESOURCE_GBUFFER_NORMAL, renderer->sampler_nearest, false},
-        {BINDING_DEPTH, RESOURCE_DEPTH, renderer->sampler_nearest, true},
-        {BINDING_SHADOW_MAP, RESOURCE_SHADOW_MAP, renderer->sampler_shadow, true},
-        {BINDING_HDR, RESOURCE_HDR, renderer->sampler_nearest, false},
-        {BINDING_HDR_STORAGE, RESOURCE_HDR, {0}, false},
-        {BINDING_LDR, RESOURCE_LDR, renderer->sampler_linear, false},
-        {BINDING_ACCUMULATION, RESOURCE_ACCUMULATION, renderer->sampler_nearest, false},
+        {BINDING_GBUFFER_ALBEDO, RESOURCE_GBUFFER_ALBEDO, renderer->sampler_nearest},
+        {BINDING_GBUFFER_NORMAL, RESOURCE_GBUFFER_NORMAL, renderer->sampler_nearest},
+        {BINDING_DEPTH, RESOURCE_DEPTH, renderer->sampler_nearest},
+        {BINDING_SHADOW_MAP, RESOURCE_SHADOW_MAP, renderer->sampler_shadow},
+        {BINDING_HDR, RESOURCE_HDR, renderer->sampler_nearest},
+        {BINDING_HDR_STORAGE, RESOURCE_HDR, {0}},
+        {BINDING_LDR, RESOURCE_LDR, renderer->sampler_linear},
+        {BINDING_ACCUMULATION, RESOURCE_ACCUMULATION, renderer->sampler_nearest},
     };
     for (u32 i = 0; i < COUNT_OF(images); i++)
-        desc.bindings[images[i].binding] =
-            (GpuBinding){.texture = renderer->targets[images[i].resource],
-                         .sampler = images[i].sampler,
-                         .depth = images[i].depth};
+        desc.bindings[images[i].binding] = (GpuBinding){
+            .texture = renderer->targets[images[i].resource], .sampler = images[i].sampler};
     desc.bindings[BINDING_OVERLAY] = (GpuBinding){
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};

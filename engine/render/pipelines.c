@@ -34,7 +34,6 @@ typedef struct PipelineRow {
     GpuBlend blend;
     GpuVertexLayout vertex_layout;
     u32 spec_mask;
-    u32 push_size;
 } PipelineRow;
 
 static const PipelineRow rows[PIPELINE_COUNT] = {
@@ -180,7 +179,7 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .compute = row->compute,
         .layouts = {renderer->frame_layout, renderer->material_layout},
         .layout_count = 2,
-        .push_size = GEOMETRY_PUSH_SIZE,
+        .push_size = OVERLAY_PUSH_SIZE,
         .spec_count = SPEC_COUNT,
         .target_count = row->to_swapchain ? 1 : row->target_count,
         .depth_format = row->has_depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,

@@ -150,10 +150,10 @@ TEST_GPU(gpu, depth_is_tested_and_sampled) {
     GpuSampler nearest =
         gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "nearest", .nearest = true});
     GpuBindGroup group = gpu_create_bind_group(
-        gpu, &(GpuBindGroupDesc){.label = "depth group",
-                                 .layout = layout,
-                                 .bindings = {{.texture = depth, .sampler = nearest, .depth = true},
-                                              {.buffer = sampled}}});
+        gpu, &(GpuBindGroupDesc){
+                 .label = "depth group",
+                 .layout = layout,
+                 .bindings = {{.texture = depth, .sampler = nearest}, {.buffer = sampled}}});
 
     GpuCommands *cmd = gpu_frame_begin(gpu);
     GpuRendering rendering = {.targets = {{color, true, {0, 0, 0, 1}}},
