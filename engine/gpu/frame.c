@@ -7,28 +7,37 @@
 // Slot of a frame = its number modulo frame_count. Between frames gpu_frame_slot is already that of
 // the next frame, so DYNAMIC buffers can be filled before gpu_frame_begin as well.
 #include "gpu_internal.h"
+#include <stdio.h>
+
+bool gpu_command_buffer_create(Gpu *gpu, const char *label, VkCommandPool *pool,
+                               VkCommandBuffer *buffer) {
+    VkCommandPoolCreateInfo pool_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                         .queueFamilyIndex = gpu->queue_family};
+    if (!GPU_CHECK(gpu, label, gpu->vk.vkCreateCommandPool(gpu->device, &pool_info, NULL, pool)))
+        return false;
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = *pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = 1};
+    if (!GPU_CHECK(gpu, label, gpu->vk.vkAllocateCommandBuffers(gpu->device, &info, buffer))) {
+        gpu->vk.vkDestroyCommandPool(gpu->device, *pool, NULL);
+        *pool = VK_NULL_HANDLE;
+        return false;
+    }
+    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_POOL, GPU_HANDLE(*pool), "%s", label);
+    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, GPU_HANDLE(*buffer), "%s", label);
+    return true;
+}
 
 static bool slot_create(Gpu *gpu, GpuFrameSlot *slot, u32 index) {
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                    .queueFamilyIndex = gpu->queue_family};
-    if (!GPU_CHECK(gpu, "frame",
-                   gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
-        return false;
-    VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                          .commandPool = slot->pool,
-                                          .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                          .commandBufferCount = 1};
-    if (!GPU_CHECK(gpu, "frame",
-                   gpu->vk.vkAllocateCommandBuffers(gpu->device, &buffer, &slot->buffer)))
-        return false;
+    char label[32];
+    snprintf(label, sizeof label, "frame %u", index);
+    if (!gpu_command_buffer_create(gpu, label, &slot->pool, &slot->buffer)) return false;
     VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     if (!GPU_CHECK(gpu, "acquired",
                    gpu->vk.vkCreateSemaphore(gpu->device, &semaphore, NULL, &slot->acquired)))
         return false;
-    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_POOL, GPU_HANDLE(slot->pool), "frame %u", index);
-    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, GPU_HANDLE(slot->buffer), "frame %u",
-                    index);
     gpu_name_object(gpu, VK_OBJECT_TYPE_SEMAPHORE, GPU_HANDLE(slot->acquired), "acquired %u",
                     index);
     return gpu_timers_create(gpu, slot, index);

@@ -334,6 +334,9 @@ void gpu_record_full_barrier(Gpu *gpu, VkCommandBuffer buffer);
 
 // --- frame.c, timers.c, upload.c, swapchain.c ---
 
+// A transient pool with one primary command buffer, named; nothing is left behind on failure.
+bool gpu_command_buffer_create(Gpu *gpu, const char *label, VkCommandPool *pool,
+                               VkCommandBuffer *buffer);
 bool gpu_frames_create(Gpu *gpu, u32 count);
 void gpu_frames_destroy(Gpu *gpu);
 bool gpu_wait_value(Gpu *gpu, u64 value);

@@ -30,28 +30,6 @@ static void transfer_barrier(Gpu *gpu, bool before, bool after) {
 
 // --- Batches ---
 
-static bool upload_slot_create(Gpu *gpu, GpuUploadSlot *slot) {
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                    .queueFamilyIndex = gpu->queue_family};
-    if (!GPU_CHECK(gpu, "uploads",
-                   gpu->vk.vkCreateCommandPool(gpu->device, &pool, NULL, &slot->pool)))
-        return false;
-    VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                          .commandPool = slot->pool,
-                                          .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                          .commandBufferCount = 1};
-    if (!GPU_CHECK(gpu, "uploads",
-                   gpu->vk.vkAllocateCommandBuffers(gpu->device, &buffer, &slot->buffer))) {
-        gpu->vk.vkDestroyCommandPool(gpu->device, slot->pool, NULL);
-        slot->pool = VK_NULL_HANDLE;
-        return false;
-    }
-    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_POOL, GPU_HANDLE(slot->pool), "uploads");
-    gpu_name_object(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, GPU_HANDLE(slot->buffer), "uploads");
-    return true;
-}
-
 // Makes sure that a batch is being recorded.
 static bool batch_begin(Gpu *gpu) {
     if (gpu->is_uploading) return true;
@@ -66,7 +44,8 @@ static bool batch_begin(Gpu *gpu) {
     GpuUploadSlot *slot = &gpu->uploads[gpu->upload_slot];
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    if ((!slot->pool && !upload_slot_create(gpu, slot)) || !gpu_wait_value(gpu, slot->value) ||
+    if ((!slot->pool && !gpu_command_buffer_create(gpu, "uploads", &slot->pool, &slot->buffer)) ||
+        !gpu_wait_value(gpu, slot->value) ||
         !GPU_CHECK(gpu, "uploads", gpu->vk.vkResetCommandPool(gpu->device, slot->pool, 0)) ||
         !GPU_CHECK(gpu, "uploads", gpu->vk.vkBeginCommandBuffer(slot->buffer, &begin)))
         return false;
