@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "gbuffer.glsl"
 
-layout(std430, set = 0, binding = BINDING_TILES) readonly buffer TileBuffer { TileRecord tiles[]; };
+layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
 layout(location = 0) out vec4 out_color;
 
 // Blue, cyan, green, yellow, red, white for 0..1.
@@ -30,13 +30,13 @@ void main() {
         color = srgb_encode(e / (1.0 + e));
     }
     if (g.depth <= 0.0) color = vec3(0.0);
-    if (DEBUG_VIEW == 7u) {
-        uvec2 tile = uvec2(gl_FragCoord.xy) / TILE_SIZE_PX;
-        uvec4 list = tiles[tile.y * frame.counts.w + tile.x].list;
+    if (DEBUG_VIEW == 14u) {
+        uvec2 tile = uvec2(gl_FragCoord.xy) >> TILE_SHIFT;
+        uvec4 list = cells[tile.y * frame.grid.x + tile.x].list;
         color = list.y + list.z == 0u ? vec3(0.0) : heat(log2(float(list.y + list.z)) / 8.0);
         float shade = 0.35 + 0.65 * dot(g.albedo, vec3(0.3, 0.6, 0.1));
         color *= g.depth > 0.0 ? shade : 0.35;
-        uvec2 inside = uvec2(gl_FragCoord.xy) % TILE_SIZE_PX;
+        uvec2 inside = uvec2(gl_FragCoord.xy) & ((1u << TILE_SHIFT) - 1u);
         if (inside.x == 0u || inside.y == 0u) color *= 0.75;
     }
     out_color = vec4(color, 1.0);

@@ -7,13 +7,14 @@
 layout(location = 0) flat in vec4 in_position;
 layout(location = 1) flat in vec4 in_light_color;
 layout(location = 2) flat in vec4 in_direction;
+layout(location = 3) flat in vec4 in_edge;
 layout(location = 0) out vec4 out_color;
 
 void main() {
     GbufferPixel g = gbuffer_read(ivec2(gl_FragCoord.xy));
     Surface s = surface_make(position_from_depth(gl_FragCoord.xy, g.depth), g.normal, g.albedo,
                              g.material);
-    vec3 sum = SPOTS != 0u ? light_spot(s, in_position, in_light_color, in_direction)
-                           : light_point(s, in_position, in_light_color.rgb);
+    vec3 sum = SPOTS != 0u ? light_spot(s, in_position, in_light_color, in_direction, in_edge.x)
+                           : light_point(s, in_position, in_light_color);
     out_color = vec4(g.depth > 0.0 ? sum * materials[g.material].emissive.w : vec3(0.0), 0.0);
 }

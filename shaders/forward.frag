@@ -5,7 +5,7 @@
 #include "material.glsl"
 #include "light.glsl"
 
-layout(std430, set = 0, binding = BINDING_TILES) readonly buffer TileBuffer { TileRecord tiles[]; };
+layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
 layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBuffer {
     uint light_indices[];
 };
@@ -25,35 +25,35 @@ void main() {
     Surface s = surface_make(in_position, normal, albedo.rgb, in_material);
     vec3 sum = vec3(0.0);
     uint point_count = flow.counts.x, spot_count = flow.counts.y;
-    if (TILE_LISTS != 0u) {
-        uvec2 tile = uvec2(gl_FragCoord.xy) / TILE_SIZE_PX;
-        uvec4 list = tiles[tile.y * frame.counts.w + tile.x].list;
+    if (CELL_LISTS != 0u) {
+        uvec2 tile = uvec2(gl_FragCoord.xy) >> TILE_SHIFT;
+        uvec4 list = cells[tile.y * frame.grid.x + tile.x].list;
         for (uint i = 0u; i < list.y; i++) {
             uint index = light_indices[list.x + i];
-            sum += light_point(s, light_position(index), light_color(index).rgb);
+            sum += light_point(s, light_position(index), light_color(index));
         }
         for (uint i = list.y; i < list.y + list.z; i++) {
             uint index = light_indices[list.x + i];
             sum += light_spot(s, light_position(index), light_color(index),
-                              spot_direction(index - point_count));
+                              spot_direction(index - point_count), spot_edge(index - point_count));
         }
     } else if (LIGHT_BLOCKS == 2u) {
         // One loop a block: choosing the block inside would load from both.
         uint end = min(point_count, LIGHT_BLOCK_CAP);
         for (uint i = 0u; i < end; i++)
-            sum += light_point(s, light_block_0[i].position, light_block_0[i].color.rgb);
+            sum += light_point(s, light_block_0[i].position, light_block_0[i].color);
         for (uint i = LIGHT_BLOCK_CAP; i < point_count; i++)
             sum += light_point(s, light_block_1[i - LIGHT_BLOCK_CAP].position,
-                               light_block_1[i - LIGHT_BLOCK_CAP].color.rgb);
+                               light_block_1[i - LIGHT_BLOCK_CAP].color);
         for (uint i = 0u; i < spot_count; i++)
             sum += light_spot(s, light_position(point_count + i), light_color(point_count + i),
-                              spot_direction(i));
+                              spot_direction(i), spot_edge(i));
     } else {
         for (uint i = 0u; i < point_count; i++)
-            sum += light_point(s, light_position(i), light_color(i).rgb);
+            sum += light_point(s, light_position(i), light_color(i));
         for (uint i = 0u; i < spot_count; i++)
             sum += light_spot(s, light_position(point_count + i), light_color(point_count + i),
-                              spot_direction(i));
+                              spot_direction(i), spot_edge(i));
     }
     vec3 radiance = light_base(s, albedo.rgb, in_material) + sum * materials[in_material].emissive.w;
     out_color = vec4(radiance, albedo.a);

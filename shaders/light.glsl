@@ -66,8 +66,9 @@ float specular_power(float cosine, float length2, float power) {
     return exp2(power * 1.442695 * ((c2 - length2) / (c2 + length2)));
 }
 
-// Reflected radiance for unit irradiance times n.l, of light from unit direction l.
-vec3 brdf(Surface s, vec3 l, float n_dot_l) {
+// Reflected radiance for unit irradiance times n.l, of light from unit direction l. highlight: the
+// light's factor on the specular lobe.
+vec3 brdf(Surface s, vec3 l, float n_dot_l, float highlight) {
     vec3 h = s.view + l; // half vector, not normalised
     float length2 = max(dot(h, h), 1e-12);
     float cosine = dot(s.normal, h);
@@ -93,7 +94,7 @@ vec3 brdf(Surface s, vec3 l, float n_dot_l) {
         diffuse = s.lobes.z + s.lobes.w * c / max(t, 1e-4);
     }
     if ((BRDF_MASK & 14u) == 0u) return s.diffuse * diffuse; // no specular lobe in this level
-    return s.diffuse * diffuse + specular * specular_power(cosine, length2, s.power);
+    return s.diffuse * diffuse + specular * (highlight * specular_power(cosine, length2, s.power));
 }
 
 // From the squared distance and its inverse square root.
@@ -108,24 +109,26 @@ float attenuation(float d2, float inv_d, float inv_range2) {
     return window * window * min(inv_d * inv_d, 1e4); // 1 / max(d, 1 cm)^2
 }
 
-vec3 light_point(Surface s, vec4 position, vec3 color) {
+vec3 light_point(Surface s, vec4 position, vec4 color) {
     vec3 l = position.xyz - s.position;
     float d2 = max(dot(l, l), 1e-8);
     float inv_d = inversesqrt(d2);
     l *= inv_d;
     float n_dot_l = max(dot(s.normal, l), 0.0);
-    return color * brdf(s, l, n_dot_l) * (attenuation(d2, inv_d, position.w) * n_dot_l);
+    return color.rgb * brdf(s, l, n_dot_l, color.w) * (attenuation(d2, inv_d, position.w) * n_dot_l);
 }
 
-vec3 light_spot(Surface s, vec4 position, vec4 color, vec4 direction) {
+// edge: SpotRecord.edge.x.
+vec3 light_spot(Surface s, vec4 position, vec4 color, vec4 direction, float edge) {
     vec3 l = position.xyz - s.position;
     float d2 = max(dot(l, l), 1e-8);
     float inv_d = inversesqrt(d2);
     l *= inv_d;
     float n_dot_l = max(dot(s.normal, l), 0.0);
-    float t = clamp((-dot(l, direction.xyz) - direction.w) * color.w, 0.0, 1.0);
+    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
     float cone = t * t * (3.0 - 2.0 * t);
-    return color.rgb * brdf(s, l, n_dot_l) * (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
+    return color.rgb * brdf(s, l, n_dot_l, color.w) *
+           (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
 }
 
 // Share of directional 0 that arrives: 4 taps of 2x2 hardware comparison around the point, which
@@ -150,7 +153,7 @@ vec3 light_directionals(Surface s) {
         float n_dot_l = max(dot(s.normal, l), 0.0);
         float visibility = 1.0;
         if (SHADOW != 0u && i == 0u) visibility = shadow_visibility(s.position, s.normal);
-        sum += directionals[i].color.rgb * brdf(s, l, n_dot_l) * (n_dot_l * visibility);
+        sum += directionals[i].color.rgb * brdf(s, l, n_dot_l, 1.0) * (n_dot_l * visibility);
     }
     return sum;
 }
@@ -180,5 +183,8 @@ vec4 light_color(uint index) {
 }
 vec4 spot_direction(uint spot) {
     return LIGHT_BLOCKS != 0u ? spot_block[spot].direction : spots[spot].direction;
+}
+float spot_edge(uint spot) {
+    return LIGHT_BLOCKS != 0u ? spot_block[spot].edge.x : spots[spot].edge.x;
 }
 #endif

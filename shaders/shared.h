@@ -38,20 +38,37 @@ typedef struct MeshVertex {
 #define BINDING_LIGHT_BLOCK_1   4  // LightRecord[LIGHT_BLOCK_CAP], uniform: the next
 #define BINDING_SPOT_BLOCK      5  // SpotRecord[SPOT_BLOCK_CAP], uniform
 #define BINDING_FLOW            6  // FrameRecord, storage
-#define BINDING_LIGHTS          7  // LightRecord[], storage: points first, then spots; one dummy last
+#define BINDING_LIGHTS          7  // LightRecord[], storage, in classes (LIGHT_CLASSES); one dummy last
 #define BINDING_SPOTS           8  // SpotRecord[], storage: of light index - point_count
-#define BINDING_TILES           9  // TileRecord[], storage
-#define BINDING_LIGHT_INDICES   10 // uint[], storage: lists of all tiles, ascending within a tile
-#define BINDING_GBUFFER_ALBEDO  11 // sampled
-#define BINDING_GBUFFER_NORMAL  12 // sampled
-#define BINDING_DEPTH           13 // sampled
-#define BINDING_SHADOW_MAP      14 // sampled, comparison
-#define BINDING_HDR             15 // sampled
-#define BINDING_HDR_STORAGE     16 // storage image rgba16f
-#define BINDING_LDR             17 // sampled (for the upscaling blit)
-#define BINDING_ACCUMULATION    18 // sampled: deferred's full-precision light sum
-#define BINDING_OVERLAY         19 // sampled: font and UI atlas
-#define BINDING_FRAME_COUNT     20
+#define BINDING_CELLS           9  // CellRecord[], storage: the packet's light grid
+#define BINDING_LIGHT_INDICES   10 // uint[], storage: lists of all cells, ascending within a cell
+#define BINDING_LIST_CELLS      11 // CellRecord[], storage: cells whose lists the device made
+#define BINDING_LIST_INDICES    12 // uint[], storage: their lists
+#define BINDING_TILE_DEPTHS     13 // TileDepthRecord[], storage
+#define BINDING_CLUSTERS        14 // uint[], storage: keys of the occupied clusters, ascending
+#define BINDING_PIXEL_CLUSTERS  15 // uint[], storage: a pixel's place in CLUSTERS, row by row
+#define BINDING_GRID_NODES      16 // GridNode[], storage: hierarchy over the lights
+#define BINDING_GRID_COUNTERS   17 // uint[GRID_COUNTER_COUNT], storage
+#define BINDING_FIRST_IMAGE     18
+#define BINDING_GBUFFER_0       18 // sampled; what they hold: render/layouts.c
+#define BINDING_GBUFFER_1       19
+#define BINDING_GBUFFER_2       20
+#define BINDING_GBUFFER_3       21
+#define BINDING_GBUFFER_4       22
+#define BINDING_DEPTH           23 // sampled
+#define BINDING_DEPTH_MS        24 // sampled, multisampled (a stand-in without MSAA)
+#define BINDING_SHADOW_MAP      25 // sampled, comparison
+#define BINDING_HDR             26 // sampled
+#define BINDING_HDR_STORAGE     27 // storage image rgba16f
+#define BINDING_HDR_OTHER       28 // sampled: the post chain's second picture
+#define BINDING_LDR             29 // sampled (for the upscaling blit)
+#define BINDING_LDR_OTHER       30 // sampled: the second way of a split picture
+#define BINDING_ACCUMULATION    31 // sampled: deferred's full-precision light sum
+#define BINDING_OVERLAY         32 // sampled: font and UI atlas
+#define BINDING_PALETTE         33 // sampled: MaterialRecord as a texture, one row a material
+#define BINDING_ATTENUATION     34 // sampled: 256 x 1 falloff
+#define BINDING_NORMAL_Z        35 // sampled: 256 x 256, z of a normal by its x and y
+#define BINDING_FRAME_COUNT     36
 // --- Set 1: one group a material. ---
 #define BINDING_ALBEDO_TEXTURE   0
 #define BINDING_NORMAL_TEXTURE   1
@@ -67,7 +84,7 @@ typedef struct MeshVertex {
 #define SPEC_SPOTS         4 // 1: there are spot lights (deferred_light: this draw is of spots)
 #define SPEC_DEBUG_VIEW    5 // DebugView of the debug pass
 #define SPEC_SUBGROUP_CULL 6 // tiled: per-subgroup culling of the tile's list
-#define SPEC_TILE_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
+#define SPEC_CELL_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
 #define SPEC_DIRECTIONALS  9 // how many directional lights
 #define SPEC_LIGHT_BLOCKS  10 // uniform blocks that hold all lights: 1, 2; 0 = too many, use storage
@@ -75,22 +92,44 @@ typedef struct MeshVertex {
 #define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
 #define SPEC_TEXTURES      13 // geometry: bit 0 has an albedo texture, bit 1 a normal map
 #define SPEC_EXACT_POWER   14 // 1 = pow() for highlights, 0 = the cheap one
-#define SPEC_COUNT         15
+#define SPEC_LAYOUT        15 // GbufferLayout
+#define SPEC_TILE_SHIFT    16 // log2 of a tile's side in px: 3..6
+#define SPEC_DEVICE_LISTS  17 // 1 = lists made on the device, 0 = the packet's
+#define SPEC_CLUSTERED     18 // 0 = cells are tiles, 1 = clusters by slice, 2 = by PIXEL_CLUSTERS
+#define SPEC_TILE_DEPTH    19 // TileDepth: 0 off, 1 min and max, 2 mask of 32 slices
+#define SPEC_ATTENUATION_LOOKUP 20 // 1 = falloff from a texture
+#define SPEC_NORMAL_LOOKUP 21 // 1 = z of a two-number normal from a texture
+#define SPEC_PALETTE_TEXTURE 22 // 1 = materials from a texture, 0 = from the uniform buffer
+#define SPEC_LIGHT_BRANCH  23 // deferred_light: stop outside range or cone
+#define SPEC_SAMPLES       24 // samples a pixel: 1 or 4
+#define SPEC_CLUSTER_NORMALS 25 // 1 = cluster keys have bits of the normal's direction
+#define SPEC_VERTEX_LIGHTING 26 // forward shading: local lights come from the vertices
+#define SPEC_POST          27 // of a post pass: a switch of its own (see shaders/post_*.frag)
+#define SPEC_COUNT         28
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
 
-// Tile side in pixels of the light grid (edge tiles are cut by the screen).
-#define TILE_SIZE_PX 16
+// Lights lie in four classes, so that those without a highlight have a loop of their own:
+// points, diffuse points, spots, diffuse spots. "Points" means both first classes together.
+#define LIGHT_CLASSES     4
 // Lights of a tile that a subgroup keeps after culling; if more survive it shades the whole list.
 #define SURVIVORS_CAP     512
 #define MATERIALS_CAP     256
 #define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
 #define LIGHT_BLOCK_CAP   2048
-#define SPOT_BLOCK_CAP    4096
+#define SPOT_BLOCK_CAP    2048
 #define DIRECTIONALS_CAP  8
-#define OVERLAY_PUSH_SIZE 16 // vec2 1 / size, padded: overlay and present
+#define PUSH_SIZE         32 // bytes that every pipeline can be pushed
+// Counters that the device writes (BINDING_GRID_COUNTERS).
+#define GRID_COUNTER_INDICES   0 // list entries that the frame's lights ask for
+#define GRID_COUNTER_FALLBACKS 1 // cells that got the list of all lights instead of their own
+#define GRID_COUNTER_LONGEST   2 // lights of the fullest cell
+#define GRID_COUNTER_CLUSTERS  3 // occupied clusters
+#define GRID_COUNTER_COUNT     8
+#define GRID_NODE_WIDTH        8 // children of a node of the light hierarchy
+#define CLUSTER_SLICES_CAP     256
 
 SHARED_STRUCT(FrameRecord) {
     mat4 view_projection; // world to clip, reversed depth, infinite far
@@ -108,8 +147,14 @@ SHARED_STRUCT(FrameRecord) {
     vec4 sky_horizon;     // rgb; w time in s (for the shader's own sparkle)
     vec4 attenuation;     // polynomial kc, kl, kq
     vec4 shadow;          // 1 / size_px, normal offset in m, distance in m, depth bias
-    uvec4 counts;         // points, spots, directionals, tiles per row
+    vec4 slices;          // slice of a cluster = clamp(floor(log2(view depth) * x + y), 0, grid.z - 1);
+                          // z: view depth at which slice 0 ends, w: factor from slice to slice
+    vec4 vertex_lighting; // x: local lights come from the vertices beyond this distance in m
+    mat4 previous_view_projection; // of the view's last packet (its own at first): motion
+    uvec4 counts;         // points, spots, directionals, clusters' hierarchy nodes (0 = none)
     uvec4 counts2;        // materials, instances, lights of the dummy index, tick
+    uvec4 counts3;        // points with a highlight, spots with a highlight, node of the spots' root, 0
+    uvec4 grid;           // cells in x, y, z (1 = tiles), side in px
 } SHARED_END(FrameRecord)
 
 SHARED_STRUCT(InstanceRecord) {
@@ -129,11 +174,12 @@ SHARED_STRUCT(MaterialRecord) {
 
 SHARED_STRUCT(LightRecord) {
     vec4 position;   // xyz world, w 1 / range^2
-    vec4 color;      // rgb * intensity, w spot: 1 / (cos inner - cos outer)
+    vec4 color;      // rgb * intensity, w factor on the highlight, 0..1
 } SHARED_END(LightRecord)
 
 SHARED_STRUCT(SpotRecord) {
     vec4 direction;  // xyz unit, the way it shines; w cos outer
+    vec4 edge;       // x 1 / (cos inner - cos outer)
 } SHARED_END(SpotRecord)
 
 SHARED_STRUCT(DirectionalRecord) {
@@ -141,8 +187,26 @@ SHARED_STRUCT(DirectionalRecord) {
     vec4 color;      // rgb * intensity; w 1 = has the shadow map
 } SHARED_END(DirectionalRecord)
 
-SHARED_STRUCT(TileRecord) {
-    uvec4 list;      // offset into light indices, count of points, count of spots, 0
-} SHARED_END(TileRecord)
+// A cell of the light grid: a tile of the screen, or a cluster (tile and slice of depth); cells
+// count x first, then y, then z. The list is ascending: points, diffuse points, spots, diffuse
+// spots.
+SHARED_STRUCT(CellRecord) {
+    uvec4 list;      // offset into the indices, count of points, count of spots, diffuse ones of
+                     // these: points in the low, spots in the high 16 bits (more than 65,535 are
+                     // counted as having a highlight, whose factor is 0)
+} SHARED_END(CellRecord)
+
+// What is seen in a tile. Background does not count; a tile of background only has near > far.
+SHARED_STRUCT(TileDepthRecord) {
+    vec4 range;      // x near, y far: view depth in m; z 32 / (far - near)
+    uvec4 mask;      // x: bit of each occupied slice of 32 between near and far; y: pixels covered
+} SHARED_END(TileDepthRecord)
+
+// Hierarchy over lights in Morton order (systems/light_hierarchy.c): GRID_NODE_WIDTH children a
+// node, leaves are lights. The points' root is node 0, the spots' the node counts3.z says.
+SHARED_STRUCT(GridNode) {
+    vec4 low;        // view-space box; w: bits of the first child (node, or index into the order)
+    vec4 high;       // w: bits of the count of children; the highest bit set = children are lights
+} SHARED_END(GridNode)
 
 #endif

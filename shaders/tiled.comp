@@ -23,7 +23,7 @@
 layout(constant_id = SPEC_PIXELS_PER_LANE) const uint PIXELS_PER_LANE = 1;
 layout(local_size_x_id = SPEC_TILED_GROUP) in; // 64 / PIXELS_PER_LANE
 
-layout(std430, set = 0, binding = BINDING_TILES) readonly buffer TileBuffer { TileRecord tiles[]; };
+layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
 layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBuffer {
     uint light_indices[];
 };
@@ -67,12 +67,12 @@ vec3 shade_points(Surface s, bool from_tile, uint first, uint last) {
         if (LIGHT_BLOCKS != 0u) {
             for (uint j = 0u; j < end; j++) {
                 uint index = subgroupShuffle(mine, j);
-                sum += light_point(s, light_position(index), light_color(index).rgb);
+                sum += light_point(s, light_position(index), light_color(index));
             }
         } else {
             vec4 position = light_position(mine), color = light_color(mine);
             for (uint j = 0u; j < end; j++)
-                sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j).rgb);
+                sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j));
         }
     }
     return sum;
@@ -86,7 +86,7 @@ vec3 shade_spots(Surface s, bool from_tile, uint first, uint last, uint point_co
         for (uint j = 0u; j < end; j++) {
             uint index = subgroupShuffle(mine, j);
             sum += light_spot(s, light_position(index), light_color(index),
-                              spot_direction(index - point_count));
+                              spot_direction(index - point_count), spot_edge(index - point_count));
         }
     }
     return sum;
@@ -94,8 +94,8 @@ vec3 shade_spots(Surface s, bool from_tile, uint first, uint last, uint point_co
 
 void main() {
     ivec2 size = ivec2(frame.viewport.xy);
-    uvec2 tile = gl_WorkGroupID.xy / (TILE_SIZE_PX / 8);
-    uvec4 list = tiles[tile.y * flow.counts.w + tile.x].list;
+    uvec2 tile = gl_WorkGroupID.xy >> (TILE_SHIFT - 3u);
+    uvec4 list = cells[tile.y * flow.grid.x + tile.x].list;
     uint point_count = flow.counts.x;
 
     vec3 lane_min = vec3(1e30), lane_max = vec3(-1e30);

@@ -113,7 +113,7 @@ static void grid_fill(GridData *data, u32 count, Arena *arena) {
                                    .point_count = count,
                                    .width_px = 1280,
                                    .height_px = 720,
-                                   .tile_px = TILE_SIZE_PX,
+                                   .tile_px = 16,
                                    .near = 0.1f,
                                    .scale_x = 1.0f / (tan_y * aspect),
                                    .scale_y = 1.0f / tan_y};

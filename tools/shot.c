@@ -211,8 +211,8 @@ static void json_counts(Json *json, const Shot *shot) {
     json_u64(json, "triangles", counts->triangles);
     json_u64(json, "draw_calls", stats.draw_calls);
     json_open_flat_object(json, "tiles");
-    json_u64(json, "count", counts->tile_count);
-    json_u64(json, "longest", counts->tile_light_max);
+    json_u64(json, "count", counts->cell_count);
+    json_u64(json, "longest", counts->cell_light_max);
     json_u64(json, "light_indices", counts->light_index_count);
     json_close(json);
 }
@@ -297,9 +297,9 @@ static int shot_run(int argc, char **argv) {
     const ToolOption options[] = {
         {"out", 'o', OPTION_TEXT, &o->out, "FILE", "the picture (PNG)"},
         {"size", 's', OPTION_SIZE, &o->size, "WxH", "window size, default 1280x720"},
-        {"path", 'p', OPTION_TEXT, &o->path, "P", "forward, deferred or tiled_deferred"},
+        {"path", 'p', OPTION_TEXT, &o->path, "P", "one of: " PATH_WORDS},
         {"view", 0, OPTION_TEXT, &o->view, "V",
-         "final, albedo, normal, depth, material, position,\nemissive or tile_lights"},
+         "picture shown, final or a debug one: see `luz info`"},
         {"camera", 'c', OPTION_TEXT, &o->camera, "NAME",
          "default: \"main\", else the first, else the player"},
         {"tick", 0, OPTION_U32, &o->tick, "N", "simulate N ticks (1/60 s) first"},

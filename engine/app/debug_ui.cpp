@@ -146,7 +146,7 @@ static void panel_counts(const App *app) {
     ImGui::Text("meshes    %u of %u", counts->drawables_visible, counts->drawables_total);
     ImGui::Text("triangles %u", counts->triangles);
     ImGui::Text("draws     %u, barriers %u", stats.draw_calls, stats.barriers);
-    ImGui::Text("fullest tile %u lights", counts->tile_light_max);
+    ImGui::Text("fullest tile %u lights", counts->cell_light_max);
 }
 
 // Words separated by blanks become the zero-separated list that a combo wants.

@@ -376,9 +376,15 @@ const Packet *session_packet(Session *session, const SessionView *view) {
                             .texts = view->texts,
                             .text_count = view->text_count,
                             .last_stamp = session->packet_stamp};
+    // After a cut to another camera nothing has moved on the picture.
+    if (session->packet_stamp && session->packet_camera == camera)
+        desc.previous_view_projection = session->packet_view_projection.m;
     const Packet *packet =
         packet_build(&desc, &session->frame, &session->scratch, &session->packet_times);
     // What somebody changes after this packet has a later stamp than what it shows.
+    session->packet_camera = camera;
+    memcpy(session->packet_view_projection.m, packet->frame.view_projection,
+           sizeof session->packet_view_projection.m);
     session->packet_stamp = session->world->stamp;
     world_advance_stamp(session->world);
     return packet;

@@ -55,6 +55,8 @@ struct Session {
     // where it sees the whole level (flying).
     Entity player;
     u32 packet_stamp;         // world stamp of the last packet
+    Entity packet_camera;     // of the last packet, and its matrix
+    Mat4 packet_view_projection;
     PacketBuildTimes packet_times;
     f32 tick_ms;
 };

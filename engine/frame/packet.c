@@ -102,15 +102,26 @@ static const char *check_frame(const Packet *packet) {
         frame->viewport[2] != 1.0f / width || frame->viewport[3] != 1.0f / height)
         return "viewport differs from the picture size";
 
-    u32 tiles_x = (packet->width_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
-    u32 tiles_y = (packet->height_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
-    if (packet->tiles.count != tiles_x * tiles_y || frame->counts[3] != tiles_x)
-        return "tile count differs from the picture size";
+    u32 side_px = settings_tile_px(&packet->settings);
+    const u32 *grid = frame->grid;
+    if (grid[3] != side_px || grid[0] != (packet->width_px + side_px - 1) / side_px ||
+        grid[1] != (packet->height_px + side_px - 1) / side_px || grid[2] < 1 ||
+        grid[2] > CLUSTER_SLICES_CAP)
+        return "the light grid differs from the picture size";
+    bool may_be_empty = settings_lists_on_device(&packet->settings);
+    if (packet->cells.count != grid[0] * grid[1] * grid[2] &&
+        !(may_be_empty && packet->cells.count == 0))
+        return "the light grid has another number of cells";
     if (packet->lights.count == 0 || frame->counts2[2] != packet->lights.count - 1)
         return "the dummy light is not the last one";
     if ((u64)frame->counts[0] + frame->counts[1] != packet->lights.count - 1 ||
         frame->counts[1] != packet->spots.count)
         return "light counts differ from the light sections";
+    if (frame->counts3[0] > frame->counts[0] || frame->counts3[1] > frame->counts[1])
+        return "more lights with a highlight than lights";
+    if (frame->counts[3] != packet->grid_nodes.count || frame->counts3[3] != 0 ||
+        (frame->counts3[2] != 0 && frame->counts3[2] >= packet->grid_nodes.count))
+        return "the hierarchy over the lights has another size";
     if (packet->directionals.count > DIRECTIONALS_CAP ||
         frame->counts[2] != packet->directionals.count)
         return "directional light count out of range";
@@ -204,35 +215,36 @@ static bool list_is_good(const u32 *indices, u32 points, u32 spots, u32 point_co
     return good;
 }
 
-// The lists of the tiles follow each other without holes, in tile order. The one exception is a
-// list of all lights at the very beginning, which any number of tiles may share (light_grid.c).
-// So the time of this check is linear in the packet's size, whatever the tiles say.
-static const char *check_tiles(const Packet *packet) {
-    const TileRecord *tiles = PACKET_DATA(packet, tiles, TileRecord);
+// The lists of the cells follow each other without holes, in cell order. The one exception is a
+// list of all lights at the very beginning, which any number of cells may share (light_grid.c).
+// So the time of this check is linear in the packet's size, whatever the cells say.
+static const char *check_cells(const Packet *packet) {
+    const CellRecord *cells = PACKET_DATA(packet, cells, CellRecord);
     const u32 *indices = PACKET_DATA(packet, light_indices, u32);
     u32 point_count = packet->frame.counts[0], spot_count = packet->frame.counts[1];
     u32 light_count = point_count + spot_count; // without the dummy
     u64 cursor = 0;
     bool shared = false;
-    if (packet->tiles.count > 0 && tiles[0].list[0] == light_count && light_count > 0) {
+    if (packet->cells.count > 0 && cells[0].list[0] == light_count && light_count > 0) {
         if (packet->light_indices.count < light_count ||
             !list_is_good(indices, point_count, spot_count, point_count, light_count))
             return "the shared light list is damaged";
         shared = true;
         cursor = light_count;
     }
-    for (u32 i = 0; i < packet->tiles.count; i++) {
-        u32 offset = tiles[i].list[0], points = tiles[i].list[1], spots = tiles[i].list[2];
-        if (tiles[i].list[3] != 0) return "tile's reserved field is not zero";
+    for (u32 i = 0; i < packet->cells.count; i++) {
+        u32 offset = cells[i].list[0], points = cells[i].list[1], spots = cells[i].list[2];
+        if ((cells[i].list[3] & 0xFFFF) > points || cells[i].list[3] >> 16 > spots)
+            return "cell has more diffuse lights than lights";
         if (points > point_count || spots > spot_count)
-            return "tile has more lights than there are";
+            return "cell has more lights than there are";
         bool all = points == point_count && spots == spot_count;
         if (offset == 0 && all && shared) continue;
-        if (offset != cursor) return "tile's light list does not lie where it belongs";
+        if (offset != cursor) return "cell's light list does not lie where it belongs";
         if (cursor + points + spots > packet->light_indices.count)
-            return "tile's light list reaches outside";
+            return "cell's light list reaches outside";
         if (!list_is_good(indices + offset, points, spots, point_count, light_count))
-            return "tile's light list is damaged";
+            return "cell's light list is damaged";
         if (offset == 0 && all) shared = true;
         cursor += points + spots;
     }
@@ -274,7 +286,7 @@ const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 tex
     if (!problem)
         problem = check_draws(packet, packet->emissive_draws, mesh_count, &emissive_budget);
     if (!problem) problem = check_lights(packet);
-    if (!problem) problem = check_tiles(packet);
+    if (!problem) problem = check_cells(packet);
     if (!problem) problem = check_texts(packet);
     return problem;
 }

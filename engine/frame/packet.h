@@ -15,22 +15,24 @@ extern "C" {
 #endif
 
 #define PACKET_MAGIC   0x4B505A4Cu // "LZPK"
-#define PACKET_VERSION 2u
+#define PACKET_VERSION 3u
 
-typedef struct PacketSection { u32 offset, count; } PacketSection; // bytes, elements
+typedef struct PacketSection {
+    u32 offset, count;
+} PacketSection; // bytes, elements
 
 // One drawcall: instances [first, first + count) of the instance section.
 typedef struct PacketDraw {
     u32 mesh;     // asset store id
     u32 material; // index into materials
     u32 first_instance, instance_count;
-    u32 lod;      // level of detail; a mesh that has fewer shows its last one
+    u32 lod; // level of detail; a mesh that has fewer shows its last one
 } PacketDraw;
 
 // What the renderer needs of a material beside its MaterialRecord.
 typedef struct PacketMaterial {
     u32 albedo_texture, normal_texture, emissive_texture; // asset store ids, 0 = none
-    u32 alpha_mode;   // AlphaMode
+    u32 alpha_mode;                                       // AlphaMode
     u32 double_sided;
     u32 emissive_pass; // 1: has an emissive texture, drawn additively after lighting
 } PacketMaterial;
@@ -38,9 +40,35 @@ typedef struct PacketMaterial {
 // Text over the picture, in internal pixels from the upper left.
 typedef struct PacketText {
     f32 x_px, y_px, size_px;
-    u32 color;              // RGBA8 sRGB, red in the low byte
-    u32 offset, length;     // into the characters section
+    u32 color;          // RGBA8 sRGB, red in the low byte
+    u32 offset, length; // into the characters section
 } PacketText;
+
+// One step of the post chain, in order; what the numbers mean: the kind's row in render/post.c.
+typedef struct PacketPost {
+    u32 kind; // PostKind of world/components.h
+    f32 values[11];
+} PacketPost;
+
+// What the light manager did with a local light, for debug pictures (only if the view asks).
+typedef enum LightFate {
+    LIGHT_KEPT,
+    LIGHT_OUTSIDE, // of the view
+    LIGHT_OCCLUDED,
+    LIGHT_MERGED,  // into another: this is one of the pair
+    LIGHT_MERGER,  // the light that stands for a pair
+    LIGHT_DROPPED, // too small or too faint
+    LIGHT_OVER_BUDGET,
+    LIGHT_FATE_COUNT
+} LightFate;
+typedef struct PacketLightMark {
+    f32 position[3], range;      // world
+    f32 direction[3], cos_outer; // spots; cos_outer < -1 = a point
+    f32 weight;                  // 0..1 of its brightness that is shown
+    f32 highlight;               // factor on its highlight
+    u32 fate;                    // LightFate
+    u32 light;                   // index into lights, UINT32_MAX = not there
+} PacketLightMark;
 
 typedef enum PacketFlags {
     PACKET_REVOXELISE = 1 << 0, // a dynamic instance changed since the last packet
@@ -48,41 +76,54 @@ typedef enum PacketFlags {
 } PacketFlags;
 
 // X(name, element type)
-#define PACKET_SECTIONS(X)                                                                 \
-    X(instances, InstanceRecord)       /* visible ones, in draw order; then shadow casters */ \
-    X(opaque_draws, PacketDraw)        /* alpha mode opaque, near to far in bands */         \
-    X(mask_draws, PacketDraw)          /* alpha mode mask */                                 \
-    X(blend_draws, PacketDraw)         /* alpha mode blend, far to near */                   \
-    X(emissive_draws, PacketDraw)      /* those of the above with an emissive texture */     \
-    X(shadow_draws, PacketDraw)        /* casters within the shadow map, opaque */           \
-    X(shadow_mask_draws, PacketDraw)   /* casters, alpha mask */                             \
-    X(materials, MaterialRecord)                                                             \
-    X(material_bindings, PacketMaterial) /* same count */                                    \
-    X(lights, LightRecord)             /* points, spots, then one dummy that lights nothing */ \
-    X(spots, SpotRecord)                                                                     \
-    X(directionals, DirectionalRecord)                                                       \
-    X(tiles, TileRecord)               /* row by row from the upper left */                  \
-    X(light_indices, u32)              /* into lights */                                     \
-    X(gi_lights, LightRecord)          /* all that affect GI, also outside the view */       \
-    X(texts, PacketText)                                                                     \
+#define PACKET_SECTIONS(X)                                                                         \
+    X(instances, InstanceRecord)     /* visible ones, in draw order; then shadow casters */        \
+    X(opaque_draws, PacketDraw)      /* alpha mode opaque, near to far in bands */                 \
+    X(mask_draws, PacketDraw)        /* alpha mode mask */                                         \
+    X(blend_draws, PacketDraw)       /* alpha mode blend, far to near */                           \
+    X(emissive_draws, PacketDraw)    /* those of the above with an emissive texture */             \
+    X(shadow_draws, PacketDraw)      /* casters within the shadow map, opaque */                   \
+    X(shadow_mask_draws, PacketDraw) /* casters, alpha mask */                                     \
+    X(materials, MaterialRecord)                                                                   \
+    X(material_bindings, PacketMaterial) /* same count */                                          \
+    X(lights, LightRecord) /* by class (LIGHT_CLASSES), then one dummy that lights nothing */      \
+    X(spots, SpotRecord)                                                                           \
+    X(directionals, DirectionalRecord)                                                             \
+    X(cells, CellRecord)    /* light grid: tiles or clusters, from the upper left */               \
+    X(light_indices, u32)   /* into lights; for GPU clusters: Morton order */                      \
+    X(grid_nodes, GridNode) /* GPU clusters, many lights: hierarchy over that order */             \
+    X(posts, PacketPost)                                                                           \
+    X(light_marks, PacketLightMark) /* for debug pictures, else empty */                           \
+    X(occluder_depths,                                                                             \
+      f32) /* for its debug picture: counts.occluder_* size, metres, else empty */                 \
+    X(gi_lights, LightRecord) /* all that affect GI, also outside the view */                      \
+    X(texts, PacketText)                                                                           \
     X(characters, u8)
 
 typedef struct PacketCounts {
-    u32 lights_total, lights_visible, lights_shaded;       // local lights: level, frustum, in lists
+    u32 lights_total, lights_visible, lights_shaded; // local lights: level, frustum, in lists
+    // Light manager: what each stage took away, what it added.
+    u32 lights_occluded, lights_merged_pairs, lights_dropped, lights_over_budget;
+    u32 lights_fading;                           // shown with less than their full brightness
+    u32 lights_near, lights_between, lights_far; // levels of detail of those that are shaded
+    f32 merge_error; // sum of the predicted errors of all merged pairs, 1 = white
+    u32 occluders, occluder_width, occluder_height; // drawn into the CPU depth buffer; its size
+    u32 drawables_occluded;
     u32 drawables_total, drawables_visible, shadow_casters;
-    u32 triangles;                                         // of visible drawables
-    u32 tile_count, tile_light_max, light_index_count;
+    u32 triangles;                                     // of visible drawables
+    u32 cell_count, cell_light_max, light_index_count; // of lists made on the CPU
+    u32 cell_fallbacks; // cells that use the list of all lights because memory ran out
 } PacketCounts;
 
 typedef struct Packet {
     u32 magic, version;
-    u64 size;           // bytes, of the whole block
-    u32 tick, flags;    // PacketFlags
-    u32 width_px, height_px;   // internal resolution
-    u32 shadow_size_px;        // 0 = no shadow map this frame
+    u64 size;                   // bytes, of the whole block
+    u32 tick, flags;            // PacketFlags
+    u32 width_px, height_px;    // internal resolution
+    u32 shadow_size_px;         // 0 = no shadow map this frame
     u32 brdf_mask, attenuation; // specialisation: what this level uses
     u32 reserved;
-    u64 shadow_key;     // hash of all that the shadow map shows: unchanged = the old one serves
+    u64 shadow_key; // hash of all that the shadow map shows: unchanged = the old one serves
     RenderSettings settings;
     PacketCounts counts;
     FrameRecord frame;
@@ -92,7 +133,7 @@ typedef struct Packet {
 } Packet;
 
 // First element of a section: PACKET_DATA(packet, lights, LightRecord).
-#define PACKET_DATA(packet, section, Type) \
+#define PACKET_DATA(packet, section, Type)                                                         \
     ((const Type *)((const u8 *)(packet) + (packet)->section.offset))
 
 // Building: begin with all counts known, then fill the sections through PACKET_WRITE.
@@ -106,8 +147,9 @@ Packet *packet_allocate(Arena *arena, const PacketSizes *sizes);
 #define PACKET_WRITE(packet, section, Type) ((Type *)((u8 *)(packet) + (packet)->section.offset))
 
 // Is this block from a stranger safe to render? Checks magic, version, size, every section's range
-// and alignment, every index (meshes < mesh_count, levels of detail, textures < texture_count, instances, materials,
-// lights, tiles), finite matrices, resolution limits. Returns NULL if all is well, else a sentence.
+// and alignment, every index (meshes < mesh_count, levels of detail, textures < texture_count,
+// instances, materials, lights, tiles), finite matrices, resolution limits. Returns NULL if all is
+// well, else a sentence.
 const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 texture_count);
 
 #define PACKET_SIDE_MAX 16384 // px

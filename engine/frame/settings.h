@@ -9,7 +9,35 @@
 extern "C" {
 #endif
 
-typedef enum RenderPath { PATH_FORWARD, PATH_DEFERRED, PATH_TILED_DEFERRED, PATH_COUNT } RenderPath;
+typedef enum RenderPath {
+    PATH_FORWARD,
+    PATH_MULTIPASS,
+    PATH_DEFERRED,
+    PATH_DEFERRED_VOLUMES,
+    PATH_TILED_DEFERRED,
+    PATH_TILED_FORWARD,
+    PATH_CLUSTERED_DEFERRED,
+    PATH_CLUSTERED_FORWARD,
+    PATH_COUNT
+} RenderPath;
+#define PATH_WORDS                                                                                 \
+    "forward multipass deferred deferred_volumes tiled_deferred tiled_forward "                    \
+    "clustered_deferred clustered_forward"
+
+// Layout of the G-buffer; what each holds and loses: render/layouts.c.
+typedef enum GbufferLayout {
+    LAYOUT_LEAN,
+    LAYOUT_WIDE,
+    LAYOUT_PACKED,
+    LAYOUT_PACKED24,
+    LAYOUT_HALF5,
+    LAYOUT_KILLZONE2,
+    LAYOUT_STARCRAFT2,
+    LAYOUT_IL,
+    LAYOUT_COUNT
+} GbufferLayout;
+#define LAYOUT_WORDS "lean wide packed packed24 half5 killzone2 starcraft2 il"
+
 typedef enum DebugView {
     VIEW_FINAL,
     VIEW_ALBEDO,
@@ -18,38 +46,107 @@ typedef enum DebugView {
     VIEW_MATERIAL,
     VIEW_POSITION,
     VIEW_EMISSIVE,
-    VIEW_TILE_LIGHTS, // heat map of the tile lists' lengths
+    VIEW_SPECULAR,
+    VIEW_MOTION,
+    VIEW_GBUFFER_0, // targets of the layout as they are
+    VIEW_GBUFFER_1,
+    VIEW_GBUFFER_2,
+    VIEW_GBUFFER_3,
+    VIEW_GBUFFER_4,
+    VIEW_CELL_LIGHTS,   // heat map of the lengths of the tiles' or clusters' lists
+    VIEW_TILE_DEPTH,    // nearest and farthest of each tile
+    VIEW_CLUSTERS,      // a colour each
+    VIEW_OVERDRAW,      // how often each pixel is drawn
+    VIEW_LIGHT_RECTS,   // over the final picture: screen bounds of lights
+    VIEW_LIGHT_VOLUMES, // spheres and cones
+    VIEW_LIGHT_STATES,  // kept, merged, dropped, by colour; why
+    VIEW_LIGHT_LODS,    // near, between, far
+    VIEW_OCCLUDERS,     // the depth buffer that lights are tested against
     VIEW_COUNT
 } DebugView;
+#define VIEW_WORDS                                                                                 \
+    "final albedo normal depth material position emissive specular motion gbuffer_0 gbuffer_1 "    \
+    "gbuffer_2 gbuffer_3 gbuffer_4 cell_lights tile_depth clusters overdraw light_rects "          \
+    "light_volumes light_states light_lods occluders"
 
 typedef enum SpecularPower { SPECULAR_FAST, SPECULAR_EXACT, SPECULAR_COUNT } SpecularPower;
+// Who decides which lights touch a tile, and how (specification of direct lighting, 6.2).
+typedef enum GridMethod { GRID_RECT, GRID_FRUSTUM, GRID_GPU, GRID_METHOD_COUNT } GridMethod;
+typedef enum TileDepth {
+    TILE_DEPTH_OFF,
+    TILE_DEPTH_MINMAX,
+    TILE_DEPTH_MASK,
+    TILE_DEPTH_COUNT
+} TileDepth;
+typedef enum TileSize { TILE_8, TILE_16, TILE_32, TILE_64, TILE_SIZE_COUNT } TileSize;
+typedef enum ClusterBuild { CLUSTERS_CPU, CLUSTERS_GPU, CLUSTER_BUILD_COUNT } ClusterBuild;
+// What of the screen a light of `deferred_volumes` touches: a quad, or its volume, in one of the
+// ways.
+typedef enum VolumeFaces {
+    VOLUME_QUAD,
+    VOLUME_BACK,    // back faces behind the surface: lights in the air go
+    VOLUME_FRONT,   // front faces before the surface: buried lights go
+    VOLUME_AUTO,    // front faces, back faces for lights that the camera is in
+    VOLUME_STENCIL, // marked first, then shaded
+    VOLUME_COUNT
+} VolumeFaces;
+typedef enum Palette { PALETTE_BUFFER, PALETTE_TEXTURE, PALETTE_COUNT } Palette;
+typedef enum Msaa { MSAA_1, MSAA_4, MSAA_COUNT } Msaa;
 
 // S(type, name, default, min, max, words, help): type F32 | BOOL | ENUM | U32
 #define RENDER_SETTINGS(S)                                                                         \
-    S(ENUM, path, PATH_TILED_DEFERRED, 0, PATH_COUNT - 1, "forward deferred tiled_deferred",       \
-      "how lit pixels are made")                                                                   \
-    S(ENUM, view, VIEW_FINAL, 0, VIEW_COUNT - 1,                                                   \
-      "final albedo normal depth material position emissive tile_lights", "picture shown")        \
+    S(ENUM, path, PATH_TILED_DEFERRED, 0, PATH_COUNT - 1, PATH_WORDS, "how lit pixels are made")   \
+    S(ENUM, layout, LAYOUT_LEAN, 0, LAYOUT_COUNT - 1, LAYOUT_WORDS, "what the G-buffer holds")     \
+    S(ENUM, view, VIEW_FINAL, 0, VIEW_COUNT - 1, VIEW_WORDS, "picture shown")                      \
     S(F32, scale, 1.0f, 0.25f, 1.0f, "", "internal resolution / window resolution")                \
     S(F32, target_ms, 0.0f, 0.0f, 1000.0f, "",                                                     \
       "frame time that a controller holds by changing scale; 0 = off (window only)")               \
     S(BOOL, shadows, 1, 0, 1, "", "shadow map of the first directional light that casts")          \
-    S(BOOL, light_culling, 1, 0, 1, "", "lights outside the view are left out")                    \
     S(BOOL, mesh_culling, 1, 0, 1, "", "drawables outside the view are left out")                  \
     S(F32, lod_error_px, 0.7f, 0.0f, 16.0f, "",                                                    \
       "how far a simpler mesh may lie from the full one on the screen; 0 = always full detail")    \
+    S(BOOL, manager, 1, 0, 1, "", "light manager; off = every light of the level is shaded")       \
+    S(BOOL, light_culling, 1, 0, 1, "", "manager: lights outside the view are left out")           \
+    S(BOOL, occlusion, 1, 0, 1, "",                                                                \
+      "manager: lights (and drawables) behind occluders are left out")                             \
+    S(BOOL, merge, 1, 0, 1, "", "manager: far lights that are close together become one")          \
+    S(BOOL, drop, 1, 0, 1, "", "manager: lights that are too small or too faint fade out")         \
+    S(BOOL, light_lod, 1, 0, 1, "", "manager: far lights lose their highlights")                   \
+    S(U32, budget, 0, 0, 4096, "",                                                                 \
+      "manager: lights that a region of 64 px may have; 0 = what the level says")                  \
+    S(BOOL, vertex_lighting, 1, 0, 1, "",                                                          \
+      "forward paths: far surfaces are lit per vertex, if the level says from where")              \
+    S(ENUM, grid, GRID_RECT, 0, GRID_METHOD_COUNT - 1, "rect frustum gpu",                         \
+      "tiles: a light's screen rectangle, the tile's frustum, or the frustum on the GPU")          \
+    S(ENUM, tile_px, TILE_16, 0, TILE_SIZE_COUNT - 1, "8 16 32 64", "side of a tile or cluster")   \
+    S(ENUM, tile_depth, TILE_DEPTH_OFF, 0, TILE_DEPTH_COUNT - 1, "off minmax mask",                \
+      "tiles: lists are narrowed by what depths are seen: their range, or 32 slices of it")        \
     S(BOOL, subgroup_cull, 1, 0, 1, "", "tiled: each subgroup culls its tile's list by its box")   \
+    S(ENUM, clusters, CLUSTERS_CPU, 0, CLUSTER_BUILD_COUNT - 1, "cpu gpu",                         \
+      "clusters: all on the CPU, or those that are seen on the GPU")                               \
+    S(BOOL, cluster_normals, 0, 0, 1, "",                                                          \
+      "gpu clusters: told apart by the normal's direction too")                                    \
+    S(BOOL, light_scissor, 1, 0, 1, "", "deferred_volumes: scissor of the light's exact bounds")   \
+    S(ENUM, light_volume, VOLUME_AUTO, 0, VOLUME_COUNT - 1, "quad back front auto stencil",        \
+      "deferred_volumes: what is drawn for a light")                                               \
+    S(BOOL, light_branch, 0, 0, 1, "", "deferred_volumes: the shader stops outside the light")     \
+    S(ENUM, msaa, MSAA_1, 0, MSAA_COUNT - 1, "1 4", "forward paths: samples a pixel")              \
+    S(BOOL, attenuation_lookup, 0, 0, 1, "", "falloff from a texture instead of arithmetic")       \
+    S(BOOL, normal_lookup, 0, 0, 1, "", "packed layouts: a normal's z from a texture")             \
+    S(ENUM, palette, PALETTE_BUFFER, 0, PALETTE_COUNT - 1, "buffer texture",                       \
+      "where shaders read materials")                                                              \
     S(ENUM, specular, SPECULAR_FAST, 0, SPECULAR_COUNT - 1, "fast exact",                          \
       "power of highlights: exp2 of a Pade logarithm, or pow() itself")                            \
+    S(BOOL, post, 1, 0, 1, "", "the level's post chain; off = tone mapping and gamma alone")       \
     S(BOOL, tonemap, 1, 0, 1, "", "Reinhard; off = clamp")                                         \
     S(F32, exposure, 1.0f, 0.0f, 1000.0f, "", "factor on the level's exposure")                    \
     S(F32, light_gain, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")           \
     S(U32, light_limit, 0, 0, 1000000, "", "only the first N point and spot lights; 0 = all")
 
-#define SETTING_FIELD_F32(name) f32 name;
+#define SETTING_FIELD_F32(name)  f32 name;
 #define SETTING_FIELD_BOOL(name) u32 name;
 #define SETTING_FIELD_ENUM(name) u32 name;
-#define SETTING_FIELD_U32(name) u32 name;
+#define SETTING_FIELD_U32(name)  u32 name;
 typedef struct RenderSettings {
 #define S(type, name, ...) SETTING_FIELD_##type(name)
     RENDER_SETTINGS(S)
@@ -67,6 +164,23 @@ extern const SettingDesc render_setting_descs[];
 extern const u32 render_setting_count;
 
 RenderSettings settings_default(void);
+
+// What settings ask of the light grid.
+static inline u32 settings_tile_px(const RenderSettings *settings) {
+    return 8u << settings->tile_px;
+}
+static inline bool settings_clustered(const RenderSettings *settings) {
+    return settings->path == PATH_CLUSTERED_DEFERRED || settings->path == PATH_CLUSTERED_FORWARD;
+}
+static inline bool settings_tiled(const RenderSettings *settings) {
+    return settings->path == PATH_TILED_DEFERRED || settings->path == PATH_TILED_FORWARD;
+}
+// The renderer makes the lists itself. The packet then holds lists only for blended surfaces, if
+// there are any (they lie before what the depth buffer shows).
+static inline bool settings_lists_on_device(const RenderSettings *settings) {
+    return (settings_tiled(settings) && settings->grid == GRID_GPU) ||
+           (settings_clustered(settings) && settings->clusters == CLUSTERS_GPU);
+}
 // "key=value" (ENUM by word, BOOL true/false/on/off/1/0). On a mistake: LOG RENDER_SETTING with a
 // suggestion, false, settings unchanged.
 bool settings_set(RenderSettings *settings, const char *key_equals_value);

@@ -88,6 +88,7 @@ typedef enum GpuFormat {
     GPU_FORMAT_RG16_SNORM,
     GPU_FORMAT_RGBA16F,
     GPU_FORMAT_RGBA32F,
+    GPU_FORMAT_RG16F,
     GPU_FORMAT_RG32F,
     GPU_FORMAT_R32F,
     GPU_FORMAT_R32U,
@@ -154,7 +155,7 @@ typedef enum GpuBindingKind {
     GPU_BINDING_KIND_COUNT
 } GpuBindingKind;
 #define GPU_UNIFORM_RANGE 65536 // what every device of today and the software driver offer
-#define GPU_BINDINGS_CAP 24
+#define GPU_BINDINGS_CAP 48
 typedef struct GpuBindLayoutDesc {
     const char *label;
     GpuBindingKind kinds[GPU_BINDINGS_CAP];
@@ -191,7 +192,7 @@ typedef enum GpuCull { GPU_CULL_BACK, GPU_CULL_NONE, GPU_CULL_FRONT } GpuCull;
 // (uint), 2 uv, 3 tangent (uint), 4 color (unorm rgba8); stream 1 = InstanceRecord, one an
 // instance, at 5, 6, 7 (rows of the world matrix) and 8 (ids). UI: pos vec2, uv vec2, color rgba8
 // unorm (20 bytes) at 0, 1, 2. LIGHT, one an instance: stream 0 = LightRecord at 0, 1; stream 1 =
-// SpotRecord at 2.
+// SpotRecord at 2, 3.
 typedef enum GpuVertexLayout {
     GPU_VERTEX_NONE,
     GPU_VERTEX_MESH,

@@ -80,6 +80,7 @@ static const VkVertexInputAttributeDescription light_attributes[] = {
     {0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, position)},
     {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, color)},
     {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(SpotRecord, direction)},
+    {3, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(SpotRecord, edge)},
 };
 static const VkVertexInputBindingDescription light_streams[] = {
     {0, sizeof(LightRecord), VK_VERTEX_INPUT_RATE_INSTANCE},

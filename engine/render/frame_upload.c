@@ -18,26 +18,39 @@ static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame",
                                                               FRAME_BUFFERS(X)
 #undef X
 };
+static GpuFormat target_format(const Renderer *renderer, RenderResource id) {
+    if (id >= RESOURCE_GBUFFER_0 && id <= RESOURCE_GBUFFER_4)
+        return layout_table[renderer->layout].targets[id - RESOURCE_GBUFFER_0];
+    return resource_formats[id];
+}
+
 static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 height) {
     if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
+    renderer->targets[id] = (GpuTexture){0};
+    renderer->frame_group_stale = true;
+    if (!target_format(renderer, id)) return true; // the layout lacks it
     renderer->targets[id] =
         gpu_create_texture(renderer->gpu, &(GpuTextureDesc){.label = target_labels[id],
                                                             .heap = "targets",
-                                                            .format = resource_formats[id],
+                                                            .format = target_format(renderer, id),
                                                             .width = width,
                                                             .height = height,
                                                             .render_target = true,
                                                             .sampled = true,
                                                             .storage = id == RESOURCE_HDR});
     renderer->usage[id] = GPU_USAGE_NONE;
-    renderer->frame_group_stale = true;
     return renderer->targets[id].id != 0;
 }
 
 static bool targets_resize(Renderer *renderer, const Packet *packet) {
     bool ok = true;
+    bool new_layout = renderer->layout != packet->settings.layout;
+    renderer->layout = packet->settings.layout;
+    for (u32 i = 0; new_layout && i < 5; i++)
+        ok = ok &&
+             target_create(renderer, RESOURCE_GBUFFER_0 + i, packet->width_px, packet->height_px);
     if (renderer->width_px != packet->width_px || renderer->height_px != packet->height_px) {
-        for (u32 id = 0; id < RESOURCE_COUNT; id++)
+        for (u32 id = 0; id < RESOURCE_FIRST_BUFFER; id++)
             if (id != RESOURCE_SHADOW_MAP)
                 ok = ok && target_create(renderer, id, packet->width_px, packet->height_px);
         if (renderer->readback.id) gpu_destroy_buffer(renderer->gpu, renderer->readback);
@@ -107,29 +120,55 @@ static bool frame_group_update(Renderer *renderer) {
         {BINDING_FLOW, FRAME_BUFFER_FRAME, 0},
         {BINDING_LIGHTS, FRAME_BUFFER_LIGHTS, 0},
         {BINDING_SPOTS, FRAME_BUFFER_SPOTS, 0},
-        {BINDING_TILES, FRAME_BUFFER_TILES, 0},
+        {BINDING_CELLS, FRAME_BUFFER_CELLS, 0},
         {BINDING_LIGHT_INDICES, FRAME_BUFFER_LIGHT_INDICES, 0},
+        {BINDING_GRID_NODES, FRAME_BUFFER_GRID_NODES, 0},
     };
     for (u32 i = 0; i < COUNT_OF(buffers); i++)
         desc.bindings[buffers[i].binding] = (GpuBinding){
             .buffer = renderer->buffers[buffers[i].buffer], .offset = buffers[i].offset};
+    static const u32 device_buffers[][2] = {
+        {BINDING_LIST_CELLS, RESOURCE_LIST_CELLS},
+        {BINDING_LIST_INDICES, RESOURCE_LIST_INDICES},
+        {BINDING_TILE_DEPTHS, RESOURCE_TILE_DEPTHS},
+        {BINDING_CLUSTERS, RESOURCE_CLUSTERS},
+        {BINDING_PIXEL_CLUSTERS, RESOURCE_PIXEL_CLUSTERS},
+        {BINDING_GRID_COUNTERS, RESOURCE_GRID_COUNTERS},
+    };
+    for (u32 i = 0; i < COUNT_OF(device_buffers); i++)
+        desc.bindings[device_buffers[i][0]] =
+            (GpuBinding){.buffer = renderer->device_buffers[device_buffers[i][1]]};
     const struct {
         u32 binding;
         RenderResource resource;
         GpuSampler sampler;
     } images[] = {
-        {BINDING_GBUFFER_ALBEDO, RESOURCE_GBUFFER_ALBEDO, renderer->sampler_nearest},
-        {BINDING_GBUFFER_NORMAL, RESOURCE_GBUFFER_NORMAL, renderer->sampler_nearest},
+        {BINDING_GBUFFER_0, RESOURCE_GBUFFER_0, renderer->sampler_nearest},
+        {BINDING_GBUFFER_1, RESOURCE_GBUFFER_1, renderer->sampler_nearest},
+        {BINDING_GBUFFER_2, RESOURCE_GBUFFER_2, renderer->sampler_nearest},
+        {BINDING_GBUFFER_3, RESOURCE_GBUFFER_3, renderer->sampler_nearest},
+        {BINDING_GBUFFER_4, RESOURCE_GBUFFER_4, renderer->sampler_nearest},
         {BINDING_DEPTH, RESOURCE_DEPTH, renderer->sampler_nearest},
         {BINDING_SHADOW_MAP, RESOURCE_SHADOW_MAP, renderer->sampler_shadow},
         {BINDING_HDR, RESOURCE_HDR, renderer->sampler_nearest},
         {BINDING_HDR_STORAGE, RESOURCE_HDR, {0}},
+        {BINDING_HDR_OTHER, RESOURCE_HDR_OTHER, renderer->sampler_linear},
         {BINDING_LDR, RESOURCE_LDR, renderer->sampler_linear},
+        {BINDING_LDR_OTHER, RESOURCE_LDR_OTHER, renderer->sampler_linear},
         {BINDING_ACCUMULATION, RESOURCE_ACCUMULATION, renderer->sampler_nearest},
     };
     for (u32 i = 0; i < COUNT_OF(images); i++)
-        desc.bindings[images[i].binding] = (GpuBinding){
-            .texture = renderer->targets[images[i].resource], .sampler = images[i].sampler};
+        desc.bindings[images[i].binding] =
+            (GpuBinding){.texture = renderer->targets[images[i].resource].id
+                                        ? renderer->targets[images[i].resource]
+                                        : renderer->black,
+                         .sampler = images[i].sampler};
+    // Stand-ins until somebody fills them.
+    static const u32 stand_ins[] = {BINDING_DEPTH_MS, BINDING_PALETTE, BINDING_ATTENUATION,
+                                    BINDING_NORMAL_Z};
+    for (u32 i = 0; i < COUNT_OF(stand_ins); i++)
+        desc.bindings[stand_ins[i]] =
+            (GpuBinding){.texture = renderer->white, .sampler = renderer->sampler_nearest};
     desc.bindings[BINDING_OVERLAY] = (GpuBinding){
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};
@@ -139,7 +178,7 @@ static bool frame_group_update(Renderer *renderer) {
 }
 
 bool frame_upload(Renderer *renderer, const Packet *packet) {
-    if (!targets_resize(renderer, packet)) return false;
+    if (!targets_resize(renderer, packet) || !device_lists_resize(renderer, packet)) return false;
     if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0))
         return false;
 #define X(id, section, Type, min_count)                                                            \
@@ -158,5 +197,7 @@ void frame_upload_destroy(Renderer *renderer) {
         if (renderer->buffers[i].id) gpu_destroy_buffer(gpu, renderer->buffers[i]);
     for (u32 i = 0; i < RESOURCE_COUNT; i++)
         if (renderer->targets[i].id) gpu_destroy_texture(gpu, renderer->targets[i]);
+    for (u32 i = 0; i < RESOURCE_COUNT; i++)
+        if (renderer->device_buffers[i].id) gpu_destroy_buffer(gpu, renderer->device_buffers[i]);
     if (renderer->readback.id) gpu_destroy_buffer(gpu, renderer->readback);
 }

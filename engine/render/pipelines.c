@@ -16,18 +16,22 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 // Which specialisation constants matter to a kind; the others are zeroed in the key, so that two
 // settings share a pipeline that does not depend on them.
 #define SPEC_BIT(id) (1u << (id))
+#define SPEC_PALETTE (SPEC_BIT(SPEC_PALETTE_TEXTURE))
 #define SPEC_LIGHTING                                                                              \
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) |               \
      SPEC_BIT(SPEC_SPOTS) | SPEC_BIT(SPEC_DIRECTIONALS) | SPEC_BIT(SPEC_LIGHT_BLOCKS) |            \
-     SPEC_BIT(SPEC_EXACT_POWER))
+     SPEC_BIT(SPEC_EXACT_POWER) | SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_PALETTE)
+// What a pass needs to read the G-buffer.
+#define SPEC_READ_GBUFFER (SPEC_BIT(SPEC_LAYOUT) | SPEC_BIT(SPEC_NORMAL_LOOKUP) | SPEC_PALETTE)
 #define SPEC_ONE_LIGHT                                                                             \
-    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER))
+    (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER) |          \
+     SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_READ_GBUFFER)
 
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
     RenderResource targets[2];
     u32 target_count;
-    bool to_swapchain;
+    bool to_swapchain, to_gbuffer; // the targets of the layout
     bool has_depth, is_shadow;
     GpuDepth depth;
     GpuCull cull;
@@ -54,12 +58,12 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_GBUFFER] = {.label = "gbuffer",
                           .vertex = "geometry.vert",
                           .fragment = "gbuffer.frag",
-                          .targets = {RESOURCE_GBUFFER_ALBEDO, RESOURCE_GBUFFER_NORMAL},
-                          .target_count = 2,
+                          .to_gbuffer = true,
                           .has_depth = true,
                           .depth = GPU_DEPTH_WRITE,
                           .vertex_layout = GPU_VERTEX_MESH,
-                          .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
+                          .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) |
+                                       SPEC_BIT(SPEC_LAYOUT) | SPEC_PALETTE},
     [PIPELINE_FORWARD] = {.label = "forward",
                           .vertex = "forward.vert",
                           .fragment = "forward.frag",
@@ -79,15 +83,15 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                 .depth = GPU_DEPTH_TEST,
                                 .blend = GPU_BLEND_ALPHA,
                                 .vertex_layout = GPU_VERTEX_MESH,
-                                .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TILE_LISTS) |
-                                             SPEC_BIT(SPEC_TEXTURES)},
+                                .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_CELL_LISTS) |
+                                             SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_DEFERRED_BASE] = {.label = "deferred base",
                                 .vertex = "fullscreen.vert",
                                 .fragment = "deferred_base.frag",
                                 .targets = {RESOURCE_ACCUMULATION},
                                 .target_count = 1,
                                 .cull = GPU_CULL_NONE,
-                                .spec_mask = SPEC_LIGHTING},
+                                .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER},
     [PIPELINE_DEFERRED_POINTS] = {.label = "deferred points",
                                   .vertex = "deferred_light.vert",
                                   .fragment = "deferred_light.frag",
@@ -114,8 +118,9 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                    .cull = GPU_CULL_NONE},
     [PIPELINE_TILED] = {.label = "tiled",
                         .compute = "tiled.comp",
-                        .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_SUBGROUP_CULL) |
-                                     SPEC_BIT(SPEC_PIXELS_PER_LANE) | SPEC_BIT(SPEC_TILED_GROUP)},
+                        .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_BIT(SPEC_TILE_SHIFT) |
+                                     SPEC_BIT(SPEC_SUBGROUP_CULL) | SPEC_BIT(SPEC_PIXELS_PER_LANE) |
+                                     SPEC_BIT(SPEC_TILED_GROUP)},
     [PIPELINE_SKY] = {.label = "sky",
                       .vertex = "fullscreen.vert",
                       .fragment = "sky.frag",
@@ -147,7 +152,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                         .targets = {RESOURCE_LDR},
                         .target_count = 1,
                         .cull = GPU_CULL_NONE,
-                        .spec_mask = SPEC_BIT(SPEC_DEBUG_VIEW)},
+                        .spec_mask = SPEC_BIT(SPEC_DEBUG_VIEW) | SPEC_BIT(SPEC_TILE_SHIFT) |
+                                     SPEC_READ_GBUFFER},
     [PIPELINE_TEXT] = {.label = "text",
                        .vertex = "overlay.vert",
                        .fragment = "overlay.frag",
@@ -179,7 +185,7 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .compute = row->compute,
         .layouts = {renderer->frame_layout, renderer->material_layout},
         .layout_count = 2,
-        .push_size = OVERLAY_PUSH_SIZE,
+        .push_size = PUSH_SIZE,
         .spec_count = SPEC_COUNT,
         .target_count = row->to_swapchain ? 1 : row->target_count,
         .depth_format = row->has_depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,
@@ -190,6 +196,11 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .depth_clamp = row->is_shadow,
     };
     memcpy(desc.spec, key->spec, sizeof key->spec);
+    const GpuFormat *gbuffer = layout_table[key->spec[SPEC_LAYOUT]].targets;
+    while (row->to_gbuffer && gbuffer[desc.target_count]) {
+        desc.targets[desc.target_count] = gbuffer[desc.target_count];
+        desc.target_count++;
+    }
     for (u32 i = 0; i < row->target_count; i++) desc.targets[i] = resource_formats[row->targets[i]];
     if (row->to_swapchain) desc.targets[0] = GPU_FORMAT_SWAPCHAIN;
     renderer->stats.pipelines++;
@@ -202,7 +213,7 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
 
 static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
     u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
-    while (pixels > 1 && (u64)packet->counts.tile_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
+    while (pixels > 1 && (u64)packet->counts.cell_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
         pixels /= 2;
     return pixels;
 }
@@ -222,7 +233,18 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_SPOTS] = packet->spots.count > 0,
         [SPEC_DEBUG_VIEW] = settings->view,
         [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,
-        [SPEC_TILE_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
+        [SPEC_LAYOUT] = settings->layout,
+        [SPEC_TILE_SHIFT] = 3 + settings->tile_px,
+        [SPEC_CLUSTERED] = !settings_clustered(settings)        ? 0
+                           : settings->clusters == CLUSTERS_CPU ? 1
+                                                                : 2,
+        [SPEC_TILE_DEPTH] = settings->tile_depth,
+        [SPEC_ATTENUATION_LOOKUP] = settings->attenuation_lookup,
+        [SPEC_NORMAL_LOOKUP] = settings->normal_lookup,
+        [SPEC_PALETTE_TEXTURE] = settings->palette == PALETTE_TEXTURE,
+        [SPEC_LIGHT_BRANCH] = settings->light_branch,
+        [SPEC_CLUSTER_NORMALS] = settings->cluster_normals,
+        [SPEC_CELL_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
         [SPEC_TONEMAP] = settings->tonemap,
         [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,

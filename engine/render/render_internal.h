@@ -7,20 +7,34 @@
 #define LUZ_RENDER_INTERNAL_H
 #include "render.h"
 
-// X(id, label, format, kind): targets of the internal resolution; SHADOW_MAP has its own size.
+// X(id, label, format): targets of the internal resolution; SHADOW_MAP has its own size. The
+// G-buffer's formats are the layout's (layouts.c). From RESOURCE_FIRST_BUFFER on: buffers that the
+// device fills (passes_lists.c).
 #define RENDER_RESOURCES(X)                                                                        \
     X(SHADOW_MAP, "shadow map", GPU_FORMAT_D32F)                                                   \
-    X(GBUFFER_ALBEDO, "gbuffer albedo", GPU_FORMAT_RGBA8_SRGB)                                     \
-    X(GBUFFER_NORMAL, "gbuffer normal", GPU_FORMAT_RG16)                                           \
+    X(GBUFFER_0, "gbuffer 0", GPU_FORMAT_NONE)                                                     \
+    X(GBUFFER_1, "gbuffer 1", GPU_FORMAT_NONE)                                                     \
+    X(GBUFFER_2, "gbuffer 2", GPU_FORMAT_NONE)                                                     \
+    X(GBUFFER_3, "gbuffer 3", GPU_FORMAT_NONE)                                                     \
+    X(GBUFFER_4, "gbuffer 4", GPU_FORMAT_NONE)                                                     \
     X(DEPTH, "depth", GPU_FORMAT_D32F)                                                             \
     X(HDR, "hdr", GPU_FORMAT_RGBA16F)                                                              \
+    X(HDR_OTHER, "hdr other", GPU_FORMAT_RGBA16F)                                                  \
     X(ACCUMULATION, "accumulation", GPU_FORMAT_RGBA32F)                                            \
-    X(LDR, "ldr", GPU_FORMAT_RGBA8)
+    X(LDR, "ldr", GPU_FORMAT_RGBA8)                                                                \
+    X(LDR_OTHER, "ldr other", GPU_FORMAT_RGBA8)                                                    \
+    X(LIST_CELLS, "list cells", GPU_FORMAT_NONE)                                                   \
+    X(LIST_INDICES, "list indices", GPU_FORMAT_NONE)                                               \
+    X(TILE_DEPTHS, "tile depths", GPU_FORMAT_NONE)                                                 \
+    X(CLUSTERS, "clusters", GPU_FORMAT_NONE)                                                       \
+    X(PIXEL_CLUSTERS, "pixel clusters", GPU_FORMAT_NONE)                                           \
+    X(GRID_COUNTERS, "grid counters", GPU_FORMAT_NONE)
 typedef enum RenderResource {
 #define X(id, ...) RESOURCE_##id,
     RENDER_RESOURCES(X)
 #undef X
-        RESOURCE_COUNT
+        RESOURCE_COUNT,
+    RESOURCE_FIRST_BUFFER = RESOURCE_LIST_CELLS
 } RenderResource;
 extern const GpuFormat resource_formats[RESOURCE_COUNT];
 
@@ -32,8 +46,9 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
     X(DIRECTIONALS, directionals, DirectionalRecord, DIRECTIONALS_CAP)                             \
     X(LIGHTS, lights, LightRecord, 2 * LIGHT_BLOCK_CAP)                                            \
     X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                                                    \
-    X(TILES, tiles, TileRecord, 1)                                                                 \
-    X(LIGHT_INDICES, light_indices, u32, 1)
+    X(CELLS, cells, CellRecord, 1)                                                                 \
+    X(LIGHT_INDICES, light_indices, u32, 1)                                                        \
+    X(GRID_NODES, grid_nodes, GridNode, 1)
 typedef enum FrameBuffer {
     FRAME_BUFFER_FRAME, // the FrameRecord itself
 #define X(id, ...) FRAME_BUFFER_##id,
@@ -68,7 +83,7 @@ typedef struct PipelineKey {
     u32 kind, double_sided;
     u32 spec[SPEC_COUNT];
 } PipelineKey;
-#define PIPELINES_CAP 256
+#define PIPELINES_CAP 1024
 typedef struct PipelineSlot {
     PipelineKey key;
     GpuPipeline pipeline;
@@ -88,7 +103,7 @@ typedef struct ResourceUse {
     GpuUsage usage;
     bool discard; // old contents are not needed
 } ResourceUse;
-#define PASS_USES_CAP 6
+#define PASS_USES_CAP 16
 typedef struct Pass {
     const char *name;
     ResourceUse uses[PASS_USES_CAP];
@@ -96,7 +111,7 @@ typedef struct Pass {
     void (*record)(const PassContext *context);
     bool (*needed)(const PassContext *context); // NULL = always
 } Pass;
-#define PATH_PASSES_CAP 12
+#define PATH_PASSES_CAP 24
 typedef struct PathRow {
     const char *name;
     const Pass *passes[PATH_PASSES_CAP]; // ends with NULL
@@ -104,6 +119,18 @@ typedef struct PathRow {
 extern const PathRow path_table[PATH_COUNT];
 extern const PathRow debug_path; // any picture but VIEW_FINAL
 extern const Pass present_pass;  // after any path, when drawing to the window
+
+// --- G-buffer layouts (layouts.c) ---
+
+typedef struct LayoutRow {
+    const char *name;
+    GpuFormat targets[5];      // GPU_FORMAT_NONE = not there
+    u32 position_normal_bytes; // a pixel, of what tells position and normal (without the depth
+                               // buffer)
+    const char *loses;         // what this layout cannot tell exactly
+} LayoutRow;
+extern const LayoutRow layout_table[LAYOUT_COUNT];
+u32 layout_bytes(const LayoutRow *row); // a pixel, all targets, without the depth buffer
 
 // --- Assets on the device (render_assets.c) ---
 
@@ -126,8 +153,10 @@ struct Renderer {
 
     // Targets.
     u32 width_px, height_px, shadow_size_px;
-    GpuTexture targets[RESOURCE_COUNT];
-    GpuUsage usage[RESOURCE_COUNT]; // what the newest recorded pass did with it
+    u32 layout;                               // GbufferLayout of the targets
+    GpuTexture targets[RESOURCE_COUNT];       // of textures
+    GpuBuffer device_buffers[RESOURCE_COUNT]; // of buffers
+    GpuUsage usage[RESOURCE_COUNT];           // what the newest recorded pass did with it
     GpuBuffer readback;
     u64 shadow_key; // of the picture in the shadow map; 0 = none
 
@@ -184,6 +213,9 @@ void overlay_record(const PassContext *context, const Overlay *overlay);
 void text_record(const PassContext *context);
 bool text_upload(Renderer *renderer, const Packet *packet);
 void overlay_destroy(Renderer *renderer);
+
+// passes_lists.c: buffers that the device fills, as large as the packet needs.
+bool device_lists_resize(Renderer *renderer, const Packet *packet);
 
 // passes.c
 void pass_run(const PassContext *context, const Pass *pass);

@@ -19,10 +19,10 @@ Renderer *renderer_create(Gpu *gpu) {
     }
     GpuBindLayoutDesc frame = {.label = "frame", .count = BINDING_FRAME_COUNT};
     for (u32 i = 0; i < BINDING_FRAME_COUNT; i++)
-        frame.kinds[i] = i <= BINDING_SPOT_BLOCK      ? GPU_BINDING_UNIFORM_BUFFER
-                         : i <= BINDING_LIGHT_INDICES ? GPU_BINDING_STORAGE_BUFFER
-                         : i == BINDING_HDR_STORAGE   ? GPU_BINDING_STORAGE_TEXTURE
-                                                      : GPU_BINDING_SAMPLED_TEXTURE;
+        frame.kinds[i] = i <= BINDING_SPOT_BLOCK    ? GPU_BINDING_UNIFORM_BUFFER
+                         : i < BINDING_FIRST_IMAGE  ? GPU_BINDING_STORAGE_BUFFER
+                         : i == BINDING_HDR_STORAGE ? GPU_BINDING_STORAGE_TEXTURE
+                                                    : GPU_BINDING_SAMPLED_TEXTURE;
     renderer->frame_layout = gpu_create_bind_layout(gpu, &frame);
     renderer->material_layout =
         gpu_create_bind_layout(gpu, &(GpuBindLayoutDesc){.label = "material",
@@ -132,7 +132,7 @@ static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratc
     // paths' first frame take seconds, and the shaders compile just the same.
     copy->frame.counts[0] = 1;
     copy->frame.counts[1] = MIN(copy->frame.counts[1], 1);
-    memset(PACKET_WRITE(copy, tiles, TileRecord), 0, copy->tiles.count * sizeof(TileRecord));
+    memset(PACKET_WRITE(copy, cells, CellRecord), 0, copy->cells.count * sizeof(CellRecord));
     bool ok = renderer_render_image(renderer, copy, NULL, NULL);
     arena_rewind(scratch, mark);
     return ok;

@@ -208,7 +208,7 @@ static void job_fill(void *context, u32 begin, u32 end, u32 thread_index) {
     fill_rows(job, begin, end);
 }
 
-void light_grid_fill(const LightGridPlan *plan, TileRecord *tiles, u32 *indices, Arena *scratch) {
+void light_grid_fill(const LightGridPlan *plan, CellRecord *tiles, u32 *indices, Arena *scratch) {
     u64 mark = arena_mark(scratch);
     FillJob job = {.plan = plan, .indices = indices};
     job.cursor = ARENA_PUSH(scratch, u32, plan->tile_count);
@@ -216,7 +216,7 @@ void light_grid_fill(const LightGridPlan *plan, TileRecord *tiles, u32 *indices,
     for (u32 i = 0; i < plan->tile_count; i++) {
         u32 offset = plan->point_first[i], points = plan->spot_first[i] - offset,
             spots = plan->end[i] - plan->spot_first[i];
-        tiles[i] = (TileRecord){{offset, points, spots, 0}};
+        tiles[i] = (CellRecord){{offset, points, spots, 0}};
         // Points come before spots in the input, so one cursor writes both parts in order.
         job.cursor[i] = sharing && offset == 0 ? UINT32_MAX : offset;
     }
@@ -232,7 +232,7 @@ LightGrid light_grid_build(const LightGridInput *input, Arena *arena) {
                       .tiles_y = plan.tiles_y,
                       .index_count = plan.index_count,
                       .longest = plan.longest};
-    grid.tiles = ARENA_PUSH(arena, TileRecord, plan.tile_count);
+    grid.tiles = ARENA_PUSH(arena, CellRecord, plan.tile_count);
     grid.indices = ARENA_PUSH(arena, u32, plan.index_count);
     light_grid_fill(&plan, grid.tiles, grid.indices, arena);
     return grid;

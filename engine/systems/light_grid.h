@@ -29,5 +29,5 @@ typedef struct LightGridPlan {
 // Memory from scratch, to be kept until after the fill.
 LightGridPlan light_grid_plan(const LightGridInput *input, Arena *scratch);
 // tiles [tile_count], indices [index_count].
-void light_grid_fill(const LightGridPlan *plan, TileRecord *tiles, u32 *indices, Arena *scratch);
+void light_grid_fill(const LightGridPlan *plan, CellRecord *tiles, u32 *indices, Arena *scratch);
 #endif

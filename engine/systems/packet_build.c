@@ -60,6 +60,10 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
     f32 time_s = (f32)(desc->world->tick % (3600u * TICK_RATE)) / TICK_RATE;
     memcpy(frame->view_projection, view->view_projection.m, sizeof frame->view_projection);
     memcpy(frame->view, view->view.m, sizeof frame->view);
+    memcpy(frame->previous_view_projection,
+           desc->previous_view_projection ? desc->previous_view_projection
+                                          : view->view_projection.m,
+           sizeof frame->previous_view_projection);
     set_vec4(frame->camera, p.x, p.y, p.z, view->near);
     set_vec4(frame->ray_right, right.x, right.y, right.z, 0);
     set_vec4(frame->ray_up, up.x, up.y, up.z, 0);
@@ -165,8 +169,12 @@ static u64 hash_shadow(const Packet *packet, const Parts *parts, u64 store_stamp
         for (u32 i = 0; i < lists[list].count; i++) {
             const PacketMaterial *binding = &parts->palette->bindings[draws[i].material];
             f32 cutoff = parts->palette->records[draws[i].material].albedo[3];
-            u32 words[7] = {list, draws[i].mesh, draws[i].lod, draws[i].instance_count,
-                            binding->double_sided, binding->albedo_texture};
+            u32 words[7] = {list,
+                            draws[i].mesh,
+                            draws[i].lod,
+                            draws[i].instance_count,
+                            binding->double_sided,
+                            binding->albedo_texture};
             memcpy(&words[6], &cutoff, sizeof cutoff);
             key = hash_bytes(words, sizeof words, key);
         }
@@ -220,7 +228,7 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
         .lights = light_count + 1,
         .spots = lights->spot_count,
         .directionals = lights->directional_count,
-        .tiles = parts->grid.tile_count,
+        .cells = parts->grid.tile_count,
         .light_indices = parts->grid.index_count,
         .gi_lights = lights->gi_count,
         .texts = desc->text_count,
@@ -238,7 +246,12 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     packet->frame.counts[0] = lights->point_count;
     packet->frame.counts[1] = lights->spot_count;
     packet->frame.counts[2] = lights->directional_count;
-    packet->frame.counts[3] = parts->grid.tiles_x;
+    packet->frame.counts3[0] = lights->point_count;
+    packet->frame.counts3[1] = lights->spot_count;
+    packet->frame.grid[0] = parts->grid.tiles_x;
+    packet->frame.grid[1] = parts->grid.tiles_y;
+    packet->frame.grid[2] = 1;
+    packet->frame.grid[3] = parts->grid.input.tile_px;
     packet->frame.counts2[0] = sizes.materials;
     packet->frame.counts2[1] = sizes.instances;
     packet->frame.counts2[2] = light_count;
@@ -257,7 +270,7 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     COPY(directionals, DirectionalRecord, lights->directionals);
     COPY(gi_lights, LightRecord, lights->gi_lights);
 #undef COPY
-    light_grid_fill(&parts->grid, PACKET_WRITE(packet, tiles, TileRecord),
+    light_grid_fill(&parts->grid, PACKET_WRITE(packet, cells, CellRecord),
                     PACKET_WRITE(packet, light_indices, u32), scratch);
     write_shadow(packet, parts, environment, desc->assets->stamp);
     write_texts(packet, desc);
@@ -269,8 +282,8 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
         .drawables_visible = parts->draws.row_count,
         .shadow_casters = parts->shadow.row_count,
         .triangles = parts->draws.triangles,
-        .tile_count = parts->grid.tile_count,
-        .tile_light_max = parts->grid.longest,
+        .cell_count = parts->grid.tile_count,
+        .cell_light_max = parts->grid.longest,
         .light_index_count = parts->grid.index_count,
     };
     return packet;

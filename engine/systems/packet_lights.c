@@ -74,15 +74,17 @@ static LightCandidates collect_candidates(const LightTable *light, f32 gain, Are
 
 static LightRecord make_record(const LightTable *light, const LightCandidates *candidates,
                                u32 row) {
-    f32 reach = light->reach[row], slope = 0.0f;
-    if (light->kind[row] == LIGHT_SPOT) {
-        f32 inner = det_cos(DEG_TO_RAD(light->inner_angle[row]));
-        f32 outer = det_cos(DEG_TO_RAD(light->outer_angle[row]));
-        // An inner angle at or beyond the outer one is a hard edge.
-        slope = 1.0f / MAX(inner - outer, 1e-4f);
-    }
+    f32 reach = light->reach[row];
     return (LightRecord){{light->x[row], light->y[row], light->z[row], 1.0f / (reach * reach)},
-                         {candidates->r[row], candidates->g[row], candidates->b[row], slope}};
+                         {candidates->r[row], candidates->g[row], candidates->b[row], 1.0f}};
+}
+
+static SpotRecord make_spot(const LightTable *light, u32 row) {
+    f32 inner = det_cos(DEG_TO_RAD(light->inner_angle[row]));
+    f32 outer = det_cos(DEG_TO_RAD(light->outer_angle[row]));
+    // An inner angle at or beyond the outer one is a hard edge.
+    return (SpotRecord){{light->dir_x[row], light->dir_y[row], light->dir_z[row], outer},
+                        {1.0f / MAX(inner - outer, 1e-4f), 0.0f, 0.0f, 0.0f}};
 }
 
 // Lights far away whose window is closed everywhere: lanes without a light read it.
@@ -90,7 +92,8 @@ static const LightRecord dummy_light = {{0.0f, -1e6f, 0.0f, 1.0f}, {0.0f, 0.0f, 
 
 static void pack_local_lights(LightParts *parts, const LightTable *light,
                               const LightCandidates *candidates, const u32 *visible,
-                              const PacketView *view, Arena *scratch) {
+                              const PacketView *view, const RenderSettings *settings,
+                              Arena *scratch) {
     u32 count = parts->visible;
     u32 *order = ARENA_PUSH(scratch, u32, count);
     for (u32 i = 0; i < count; i++)
@@ -107,10 +110,7 @@ static void pack_local_lights(LightParts *parts, const LightTable *light,
     for (u32 i = 0; i < count; i++) {
         u32 row = order[i];
         parts->lights[i] = make_record(light, candidates, row);
-        if (i >= parts->point_count)
-            parts->spots[i - parts->point_count] =
-                (SpotRecord){{light->dir_x[row], light->dir_y[row], light->dir_z[row],
-                              det_cos(DEG_TO_RAD(light->outer_angle[row]))}};
+        if (i >= parts->point_count) parts->spots[i - parts->point_count] = make_spot(light, row);
         Vec3 from_eye = vec3_sub(vec3(candidates->x[row], candidates->y[row], candidates->z[row]),
                                  view->position);
         x[i] = vec3_dot(from_eye, view->right);
@@ -125,7 +125,7 @@ static void pack_local_lights(LightParts *parts, const LightTable *light,
                                          .radius = radius,
                                          .count = count,
                                          .point_count = parts->point_count,
-                                         .tile_px = TILE_SIZE_PX,
+                                         .tile_px = settings_tile_px(settings),
                                          .near = view->near,
                                          .scale_x = 1.0f / view->tan_x,
                                          .scale_y = 1.0f / view->tan_y};
@@ -185,7 +185,7 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
     parts.visible =
         cull_spheres(desc->settings.light_culling ? &view->frustum : &everywhere, candidates.x,
                      candidates.y, candidates.z, candidates.radius, count, visible);
-    pack_local_lights(&parts, light, &candidates, visible, view, scratch);
+    pack_local_lights(&parts, light, &candidates, visible, view, &desc->settings, scratch);
     parts.grid_input.width_px = desc->width_px;
     parts.grid_input.height_px = desc->height_px;
     collect_directionals(&parts, light, &candidates);

@@ -80,7 +80,7 @@ typedef struct LightGridInput {
     f32 near, scale_x, scale_y;    // projection scales
 } LightGridInput;
 typedef struct LightGrid {
-    TileRecord *tiles; // [tiles_x * tiles_y], rows from the upper left
+    CellRecord *tiles; // [tiles_x * tiles_y], rows from the upper left
     u32 *indices;      // ascending within a tile
     u32 tiles_x, tiles_y, index_count;
     u32 longest;       // lights in the fullest tile
@@ -100,6 +100,7 @@ typedef struct PacketBuildDesc {
     const PacketText2D *texts;
     u32 text_count;
     u32 last_stamp;             // world stamp of the previous packet: for the flags
+    const f32 *previous_view_projection; // of the previous packet; NULL = there is none
 } PacketBuildDesc;
 typedef struct PacketBuildTimes { f32 cull_ms, lights_ms, grid_ms, pack_ms; } PacketBuildTimes;
 // The packet lies in `out`; scratch is used and given back. times may be NULL.

@@ -163,6 +163,42 @@ extern "C" {
     C(U32, shadow_size, "px", 1024, "shadow_size", 64, 4096, "side of the shadow map")            \
     C(F32, gravity, "m/s2", 9.81, "gravity", 0, 100, "pull on walkers")
 
+// How the light manager simplifies (specification of direct lighting, section 5). Pixels are those of
+// a picture 720 px high, so that a larger picture shows the same lights.
+#define LIGHT_MANAGER_COLUMNS(C)                                                                  \
+    C(F32, lod_near, "m", 20, "lod_near", 0, 1e5, "nearer lights have full highlights")           \
+    C(F32, lod_far, "m", 40, "lod_far", 0, 1e5, "farther lights have none")                       \
+    C(F32, merge_distance, "m", 15, "merge_distance", 0, 1e5, "nearer lights are never merged")   \
+    C(F32, merge_error, "", 0.02, "merge_error", 0, 1, "largest predicted error of a merged pair, 1 = white") \
+    C(F32, drop_area, "px2", 16, "drop_area", 0, 1e6, "lights that cover less fade out")          \
+    C(F32, drop_contribution, "", 0.00390625, "drop_contribution", 0, 1, "fainter lights fade out, 1 = white") \
+    C(U32, budget, "", 0, "budget", 0, 4096, "lights that a region of 64 px may have; 0 = any")   \
+    C(F32, vertex_lighting, "m", 0, "vertex_lighting", 0, 1e5,                                    \
+      "forward paths: surfaces beyond are lit per vertex; 0 = never")
+
+// Something large that hides what is behind it, for the light manager's culling.
+#define OCCLUDER_COLUMNS(C)                                                                       \
+    C(ENUM, shape, "box mesh", 0, "shape", 0, 1, "a box about the entity, or its instance's triangles") \
+    COLUMNS_VEC3_(C, size_x, size_y, size_z, "m", 1, "size", 0, 1e4, "box: side lengths")         \
+    COLUMNS_VEC3_(C, center_x, center_y, center_z, "m", 0, "center", -1e5, 1e5, "box: its middle, in the entity's space")
+
+// A step of the post chain. Those on radiance (fog, heat) come first, then tone mapping, then gamma;
+// within these they run by `order`, equal ones as they stand in the level. A level without any has
+// tone mapping and gamma.
+#define POST_COLUMNS(C)                                                                           \
+    C(ENUM, kind, "fog heat tonemap gamma", 0, "kind", 0, 3, "what it does")                      \
+    C(I32, order, "", 0, "order", -1000, 1000, "smaller ones run first")                       \
+    COLUMNS_VEC3_(C, color_r, color_g, color_b, "linear", 0.5, "color", 0, 100, "fog: its colour") \
+    C(F32, density, "1/m", 0.02, "density", 0, 10, "fog: share that a metre takes")               \
+    C(F32, start, "m", 0, "start", 0, 1e5, "fog: where it begins")                                \
+    C(F32, height, "m", 0, "height", -1e5, 1e5, "fog: level of its thickest layer")               \
+    C(F32, falloff, "1/m", 0, "falloff", 0, 100, "fog: how fast it thins out above; 0 = everywhere") \
+    C(F32, amount, "px", 2, "amount", 0, 100, "heat: how far the picture shifts, in px of 720")   \
+    C(F32, scale, "1/m", 4, "scale", 0.01, 100, "heat: waves per metre")                          \
+    C(F32, speed, "Hz", 1, "speed", 0, 100, "heat: how fast they rise")                           \
+    C(F32, reach, "m", 3, "reach", 0.01, 1e4, "heat: radius about the entity")                     \
+    C(F32, gamma, "", 0, "gamma", 0, 4, "gamma: exponent; 0 = the sRGB curve")
+
 // X(Name, name, COLUMNS, singleton, help)
 #define ENGINE_COMPONENTS(X)                                                                      \
     X(Transform, transform, TRANSFORM_COLUMNS, false, "place, rotation and size")                 \
@@ -177,7 +213,10 @@ extern "C" {
     X(Walker, walker, WALKER_COLUMNS, false, "walks or flies by input")                           \
     X(Model, model, MODEL_COLUMNS, false, "a model file or generated shape (derived)")            \
     X(Material, material, MATERIAL_COLUMNS, false, "a surface")                                   \
-    X(Environment, environment, ENVIRONMENT_COLUMNS, true, "the level as a whole")
+    X(Environment, environment, ENVIRONMENT_COLUMNS, true, "the level as a whole")                \
+    X(LightManager, light_manager, LIGHT_MANAGER_COLUMNS, true, "how lights are simplified")      \
+    X(Occluder, occluder, OCCLUDER_COLUMNS, false, "hides lights behind it")                      \
+    X(Post, post, POST_COLUMNS, false, "a step of the post chain")
 
 enum {
 #define X(Name, name, ...) COMPONENT_##name,

@@ -109,7 +109,7 @@ TEST_GPU(golden, debug_views_differ) {
     Studio studio;
     studio_open(&studio, "data/levels/cornell.toml");
     u64 hashes[VIEW_COUNT];
-    for (u32 view = 0; view < VIEW_COUNT; view++) {
+    for (u32 view = 0; view <= VIEW_EMISSIVE; view++) {
         RenderSettings settings = settings_default();
         settings.view = view;
         hashes[view] = studio_draw(&studio, "main", &settings, 160, 90).hash;

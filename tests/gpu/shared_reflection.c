@@ -18,16 +18,20 @@
           M(FrameRecord, camera) M(FrameRecord, ray_right) M(FrameRecord, ray_up)                  \
               M(FrameRecord, ray_forward) M(FrameRecord, viewport) M(FrameRecord, ambient)         \
                   M(FrameRecord, sky_zenith) M(FrameRecord, sky_horizon)                           \
-                      M(FrameRecord, attenuation) M(FrameRecord, shadow) M(FrameRecord, counts)    \
-                          M(FrameRecord, counts2))                                                 \
+                      M(FrameRecord, attenuation) M(FrameRecord, shadow) M(FrameRecord, slices)    \
+                          M(FrameRecord, vertex_lighting) M(FrameRecord, previous_view_projection) \
+                              M(FrameRecord, counts) M(FrameRecord, counts2)                       \
+                                  M(FrameRecord, counts3) M(FrameRecord, grid))                    \
     X(InstanceRecord, M(InstanceRecord, world) M(InstanceRecord, ids))                             \
     X(MaterialRecord,                                                                              \
       M(MaterialRecord, albedo) M(MaterialRecord, specular) M(MaterialRecord, emissive)            \
           M(MaterialRecord, lobes) M(MaterialRecord, extra))                                       \
     X(LightRecord, M(LightRecord, position) M(LightRecord, color))                                 \
-    X(SpotRecord, M(SpotRecord, direction))                                                        \
+    X(SpotRecord, M(SpotRecord, direction) M(SpotRecord, edge))                                    \
     X(DirectionalRecord, M(DirectionalRecord, direction) M(DirectionalRecord, color))              \
-    X(TileRecord, M(TileRecord, list))
+    X(CellRecord, M(CellRecord, list))                                                             \
+    X(TileDepthRecord, M(TileDepthRecord, range) M(TileDepthRecord, mask))                         \
+    X(GridNode, M(GridNode, low) M(GridNode, high))
 
 typedef struct SharedMember {
     const char *name;
@@ -49,7 +53,7 @@ static const SharedStruct structs[] = {
 
 // Structs that no shader declares: instances come as vertex attributes (engine/gpu/pipeline.c takes
 // their offsets from the C struct).
-static const char *const unused_structs[] = {"InstanceRecord", NULL};
+static const char *const unused_structs[] = {"InstanceRecord", "TileDepthRecord", "GridNode", NULL};
 
 // Which binding belongs to which block, or to which name of an image.
 static const struct {
@@ -65,10 +69,10 @@ static const struct {
     {"FlowBuffer", 0, BINDING_FLOW},
     {"LightBuffer", 0, BINDING_LIGHTS},
     {"SpotBuffer", 0, BINDING_SPOTS},
-    {"TileBuffer", 0, BINDING_TILES},
+    {"CellBuffer", 0, BINDING_CELLS},
     {"IndexBuffer", 0, BINDING_LIGHT_INDICES},
-    {"gbuffer_albedo", 0, BINDING_GBUFFER_ALBEDO},
-    {"gbuffer_normal", 0, BINDING_GBUFFER_NORMAL},
+    {"gbuffer_0", 0, BINDING_GBUFFER_0},
+    {"gbuffer_1", 0, BINDING_GBUFFER_1},
     {"gbuffer_depth", 0, BINDING_DEPTH},
     {"shadow_map", 0, BINDING_SHADOW_MAP},
     {"ldr", 0, BINDING_LDR},

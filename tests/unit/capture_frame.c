@@ -27,7 +27,8 @@ static void assert_draws_equal(const Packet *a, const AssetStore *a_store, const
         assert_int_equal(mesh_a->index_count, mesh_b->index_count);
         assert_memory_equal(mesh_a->vertices, mesh_b->vertices,
                             mesh_a->vertex_count * sizeof(MeshVertex));
-        assert_memory_equal(mesh_a->indices, mesh_b->indices, mesh_a->total_index_count * sizeof(u32));
+        assert_memory_equal(mesh_a->indices, mesh_b->indices,
+                            mesh_a->total_index_count * sizeof(u32));
         assert_true(mesh_a->radius == mesh_b->radius);
         assert_int_equal(mesh_a->has_color, mesh_b->has_color);
     }

@@ -61,11 +61,12 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
              m->normal_texture < MAX(texture_count, 1));
         NEED(m->emissive_texture < MAX(texture_count, 1) && m->alpha_mode < 3);
     }
-    u32 tiles_x = (p->width_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
-    u32 tiles_y = (p->height_px + TILE_SIZE_PX - 1) / TILE_SIZE_PX;
-    NEED(p->frame.counts[3] == tiles_x && p->tiles.count == tiles_x * tiles_y);
-    for (u32 t = 0; t < p->tiles.count; t++) {
-        const u32 *list = PACKET_DATA(p, tiles, TileRecord)[t].list;
+    u32 side_px = settings_tile_px(&p->settings);
+    u32 tiles_x = (p->width_px + side_px - 1) / side_px;
+    u32 tiles_y = (p->height_px + side_px - 1) / side_px;
+    NEED(p->frame.grid[0] == tiles_x && p->cells.count == tiles_x * tiles_y);
+    for (u32 t = 0; t < p->cells.count; t++) {
+        const u32 *list = PACKET_DATA(p, cells, CellRecord)[t].list;
         NEED((u64)list[0] + list[1] + list[2] <= p->light_indices.count);
         const u32 *indices = PACKET_DATA(p, light_indices, u32) + list[0];
         for (u32 i = 0; i < list[1]; i++) NEED(indices[i] < p->frame.counts[0]);
@@ -224,10 +225,10 @@ TEST(frame_packet, each_index_is_checked) {
     u32 *indices = PACKET_WRITE(p, light_indices, u32);
     TOO_LARGE(indices[0], p->lights.count - 1); // the dummy is in no list
     TOO_LARGE(indices[p->light_indices.count - 1], p->lights.count - 1);
-    TileRecord *tiles = PACKET_WRITE(p, tiles, TileRecord);
-    TOO_LARGE(tiles[p->tiles.count - 1].list[0], p->light_indices.count + 1);
-    TOO_LARGE(tiles[p->tiles.count / 2].list[1], tiles[p->tiles.count / 2].list[1] + 1);
-    TOO_LARGE(tiles[p->tiles.count / 2].list[2], tiles[p->tiles.count / 2].list[2] + 1);
+    CellRecord *cells = PACKET_WRITE(p, cells, CellRecord);
+    TOO_LARGE(cells[p->cells.count - 1].list[0], p->light_indices.count + 1);
+    TOO_LARGE(cells[p->cells.count / 2].list[1], cells[p->cells.count / 2].list[1] + 1);
+    TOO_LARGE(cells[p->cells.count / 2].list[2], cells[p->cells.count / 2].list[2] + 1);
     PacketText *text = PACKET_WRITE(p, texts, PacketText);
     TOO_LARGE(text->offset, p->characters.count + 1);
     TOO_LARGE(text->length, p->characters.count + 1);
@@ -238,6 +239,8 @@ TEST(frame_packet, each_index_is_checked) {
     TOO_LARGE(p->flags, 4);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts[i], p->frame.counts[i] + 1);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts2[i], p->frame.counts2[i] + 1);
+    for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts3[i], p->frame.counts3[i] + 1);
+    for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.grid[i], p->frame.grid[i] + 1);
     assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     free(p);
     systems_fixture_destroy(f);

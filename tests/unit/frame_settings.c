@@ -20,8 +20,8 @@ TEST(frame_settings, texts_set_values) {
     RenderSettings s = settings_default();
     assert_true(settings_set(&s, "path=forward"));
     assert_int_equal(s.path, PATH_FORWARD);
-    assert_true(settings_set(&s, "view=tile_lights"));
-    assert_int_equal(s.view, VIEW_TILE_LIGHTS);
+    assert_true(settings_set(&s, "view=cell_lights"));
+    assert_int_equal(s.view, VIEW_CELL_LIGHTS);
     assert_true(settings_set(&s, "scale=0.5"));
     assert_true(s.scale == 0.5f);
     assert_true(settings_set(&s, "light_limit=123"));
@@ -110,10 +110,11 @@ TEST(frame_settings, clamp_survives_any_bits) {
 
 TEST(frame_settings, words_of_values) {
     char out[32];
-    assert_string_equal(settings_word("path", 2, out, sizeof out), "tiled_deferred");
+    assert_string_equal(settings_word("path", PATH_TILED_DEFERRED, out, sizeof out),
+                        "tiled_deferred");
     assert_string_equal(settings_word("view", 0, out, sizeof out), "final");
     assert_string_equal(settings_word("path", 99, out, sizeof out), "");
     assert_string_equal(settings_word("nothing", 0, out, sizeof out), "");
     assert_string_equal(settings_word("scale", 0, out, sizeof out), "");
-    assert_string_equal(settings_word("path", 2, out, 6), "tiled");
+    assert_string_equal(settings_word("path", PATH_TILED_DEFERRED, out, 6), "tiled");
 }

@@ -260,8 +260,8 @@ TEST(systems_packet, light_manager_keeps_what_lights_the_view) {
     const SpotRecord *s = PACKET_DATA(p, spots, SpotRecord);
     ASSERT_NEAR(s->direction[2], -1, 1e-6);
     ASSERT_NEAR(s->direction[3], cos(35 * 3.14159265 / 180), 1e-6);
-    ASSERT_NEAR(lights[1].color[3], 1 / (cos(20 * 3.14159265 / 180) - cos(35 * 3.14159265 / 180)),
-                1e-3);
+    assert_true(lights[0].color[3] == 1 && lights[1].color[3] == 1); // full highlights
+    ASSERT_NEAR(s->edge[0], 1 / (cos(20 * 3.14159265 / 180) - cos(35 * 3.14159265 / 180)), 1e-3);
     const LightRecord *dummy = &lights[p->frame.counts2[2]];
     assert_true(dummy->color[0] == 0 && dummy->position[3] >= 1 && dummy->position[1] < -1000);
 
@@ -323,7 +323,7 @@ TEST(systems_packet, no_lit_pixel_misses_its_light) {
                 y = (0.5f - clip.y / clip.w * 0.5f) * 211;
             if (!(x >= 0 && x < 333 && y >= 0 && y < 211)) continue;
             const u32 *list =
-                PACKET_DATA(p, tiles, TileRecord)[(u32)y / 16 * p->frame.counts[3] + (u32)x / 16]
+                PACKET_DATA(p, cells, CellRecord)[(u32)y / 16 * p->frame.grid[0] + (u32)x / 16]
                     .list;
             bool found = false;
             for (u32 i = 0; i < list[1] + list[2]; i++) {

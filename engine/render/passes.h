@@ -1,0 +1,36 @@
+// passes.h: the rows of passes, and what their record functions share. Private to engine/render/.
+#ifndef LUZ_PASSES_H
+#define LUZ_PASSES_H
+#include "render_internal.h"
+
+// Rows of Pass.uses.
+#define USE(id, use_)                                                                              \
+    { RESOURCE_##id, GPU_USAGE_##use_, false }
+#define OVERWRITE(id, use_)                                                                        \
+    { RESOURCE_##id, GPU_USAGE_##use_, true }
+// All targets of the layout in use; those that it lacks are passed over.
+#define USE_GBUFFER(use_)                                                                          \
+    USE(GBUFFER_0, use_), USE(GBUFFER_1, use_), USE(GBUFFER_2, use_), USE(GBUFFER_3, use_),        \
+        USE(GBUFFER_4, use_)
+#define OVERWRITE_GBUFFER(use_)                                                                    \
+    OVERWRITE(GBUFFER_0, use_), OVERWRITE(GBUFFER_1, use_), OVERWRITE(GBUFFER_2, use_),            \
+        OVERWRITE(GBUFFER_3, use_), OVERWRITE(GBUFFER_4, use_)
+// Targets of GpuRendering.
+#define TARGET(id)                                                                                 \
+    { .texture = c->renderer->targets[RESOURCE_##id] }
+#define CLEARED(id)                                                                                \
+    { .texture = c->renderer->targets[RESOURCE_##id], .clear = true }
+
+void bind_frame(const PassContext *c, GpuPipeline pipeline);
+// Begins rendering at the packet's resolution.
+void begin(const PassContext *c, const GpuRendering *rendering);
+void draw_fullscreen(const PassContext *c, PipelineKind kind);
+
+// passes_geometry.c
+extern const Pass shadow_pass, gbuffer_pass, forward_pass, over_pass;
+// passes_lighting.c
+extern const Pass deferred_pass, resolve_pass, tiled_pass;
+// post.c
+extern const Pass tonemap_pass, debug_pass;
+
+#endif

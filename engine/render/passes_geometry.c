@@ -1,0 +1,78 @@
+// passes_geometry.c: passes that draw meshes: shadow map, G-buffer, forward shading, and what comes
+// over the lit picture.
+// Data in: a packet's draw lists. Data out: commands. Called by: pass_run (passes.c).
+#include "passes.h"
+
+// --- Shadow map: drawn only when what it shows changed (shadow_key) ---
+
+static bool shadow_needed(const PassContext *c) {
+    return c->packet->shadow_size_px > 0 && c->renderer->shadow_key != c->packet->shadow_key;
+}
+static void shadow_record(const PassContext *c) {
+    gpu_cmd_begin_rendering(c->cmd, &(GpuRendering){.depth = CLEARED(SHADOW_MAP),
+                                                    .width = c->packet->shadow_size_px,
+                                                    .height = c->packet->shadow_size_px});
+    draw_list(c, PIPELINE_SHADOW, c->packet->shadow_draws, false);
+    draw_list(c, PIPELINE_SHADOW_MASK, c->packet->shadow_mask_draws, true);
+    gpu_cmd_end_rendering(c->cmd);
+    c->renderer->shadow_key = c->packet->shadow_key;
+    c->renderer->stats.shadow_redrawn = 1;
+}
+const Pass shadow_pass = {
+    "shadow", {OVERWRITE(SHADOW_MAP, DEPTH_TARGET)}, 1, shadow_record, shadow_needed};
+
+// --- Geometry ---
+
+static void gbuffer_record(const PassContext *c) {
+    // Colour is cleared as well: the background's material must be an index that exists.
+    GpuRendering rendering = {.depth = CLEARED(DEPTH)};
+    const LayoutRow *layout = &layout_table[c->packet->settings.layout];
+    while (rendering.target_count < COUNT_OF(layout->targets) &&
+           layout->targets[rendering.target_count]) {
+        u32 i = rendering.target_count++;
+        rendering.targets[i] =
+            (GpuTarget){.texture = c->renderer->targets[RESOURCE_GBUFFER_0 + i], .clear = true};
+    }
+    begin(c, &rendering);
+    draw_list(c, PIPELINE_GBUFFER, c->packet->opaque_draws, false);
+    draw_list(c, PIPELINE_GBUFFER, c->packet->mask_draws, true);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass gbuffer_pass = {"gbuffer",
+                           {OVERWRITE_GBUFFER(COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET)},
+                           6,
+                           gbuffer_record,
+                           NULL};
+
+static void forward_record(const PassContext *c) {
+    begin(c,
+          &(GpuRendering){.targets = {CLEARED(HDR)}, .target_count = 1, .depth = CLEARED(DEPTH)});
+    draw_list(c, PIPELINE_FORWARD, c->packet->opaque_draws, false);
+    draw_list(c, PIPELINE_FORWARD, c->packet->mask_draws, true);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass forward_pass = {"forward",
+                           {OVERWRITE(HDR, COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
+                            USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                           3,
+                           forward_record,
+                           NULL};
+
+// --- What is drawn over the lit picture: sky, textured emission, blended surfaces ---
+
+static void over_record(const PassContext *c) {
+    begin(c, &(GpuRendering){.targets = {TARGET(HDR)},
+                             .target_count = 1,
+                             .depth = TARGET(DEPTH),
+                             .depth_read_only = true});
+    draw_fullscreen(c, PIPELINE_SKY);
+    draw_list(c, PIPELINE_EMISSIVE, c->packet->emissive_draws, false);
+    draw_list(c, PIPELINE_FORWARD_BLEND, c->packet->blend_draws, false);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass over_pass = {
+    "sky and glow",
+    {USE(HDR, COLOR_TARGET), USE(DEPTH, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+    3,
+    over_record,
+    NULL};

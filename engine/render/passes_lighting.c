@@ -1,0 +1,57 @@
+// passes_lighting.c: passes that light what the G-buffer holds.
+// Data in: a packet's lights and light lists. Data out: commands. Called by: pass_run (passes.c).
+#include "passes.h"
+
+// One full-screen triangle a light, lights [first, first + count).
+static void draw_lights(const PassContext *c, PipelineKind kind, u32 first, u32 count) {
+    if (count == 0) return;
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    bind_frame(c, pipeline);
+    gpu_cmd_bind_vertices(c->cmd, 0, c->renderer->buffers[FRAME_BUFFER_LIGHTS],
+                          first * sizeof(LightRecord));
+    gpu_cmd_bind_vertices(c->cmd, 1, c->renderer->buffers[FRAME_BUFFER_SPOTS], 0);
+    gpu_cmd_draw(c->cmd, 3, count, 0, 0);
+    c->renderer->stats.draw_calls++;
+}
+
+// --- Lighting ---
+
+static void deferred_record(const PassContext *c) {
+    begin(c, &(GpuRendering){.targets = {CLEARED(ACCUMULATION)}, .target_count = 1});
+    draw_fullscreen(c, PIPELINE_DEFERRED_BASE);
+    u32 point_count = c->packet->frame.counts[0], spot_count = c->packet->frame.counts[1];
+    draw_lights(c, PIPELINE_DEFERRED_POINTS, 0, point_count);
+    draw_lights(c, PIPELINE_DEFERRED_SPOTS, point_count, spot_count);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass deferred_pass = {"lighting",
+                            {OVERWRITE(ACCUMULATION, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
+                             USE(DEPTH, SAMPLED_FRAGMENT), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                            8,
+                            deferred_record,
+                            NULL};
+
+static void resolve_record(const PassContext *c) {
+    begin(c, &(GpuRendering){.targets = {TARGET(HDR)}, .target_count = 1});
+    draw_fullscreen(c, PIPELINE_DEFERRED_RESOLVE);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass resolve_pass = {"resolve",
+                           {OVERWRITE(HDR, COLOR_TARGET), USE(ACCUMULATION, SAMPLED_FRAGMENT)},
+                           2,
+                           resolve_record,
+                           NULL};
+
+static void tiled_record(const PassContext *c) {
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    bind_frame(c, pipeline);
+    gpu_cmd_dispatch(c->cmd, (c->packet->width_px + 7) / 8, (c->packet->height_px + 7) / 8, 1);
+}
+const Pass tiled_pass = {"lighting",
+                         {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+                          USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE)},
+                         8,
+                         tiled_record,
+                         NULL};
