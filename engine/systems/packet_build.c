@@ -52,7 +52,7 @@ static void set_vec4(f32 *out, f32 x, f32 y, f32 z, f32 w) {
 }
 
 static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const PacketView *view,
-                        const Environment *e) {
+                        const LightParts *lights, const Environment *e) {
     Vec3 right = vec3_scale(view->right, view->tan_x), up = vec3_scale(view->up, view->tan_y);
     Vec3 p = view->position, f = view->forward;
     f32 width = (f32)desc->width_px, height = (f32)desc->height_px, glow = e->ambient_intensity;
@@ -75,6 +75,13 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
     set_vec4(frame->sky_horizon, e->sky_horizon_r, e->sky_horizon_g, e->sky_horizon_b, time_s);
     set_vec4(frame->attenuation, e->attenuation_constant, e->attenuation_linear,
              e->attenuation_quadratic, 0);
+    frame->counts[0] = lights->point_count;
+    frame->counts[1] = lights->spot_count;
+    frame->counts[2] = lights->directional_count;
+    frame->counts2[2] = lights->point_count + lights->spot_count;
+    frame->counts2[3] = desc->world->tick;
+    frame->counts3[0] = lights->point_highlights;
+    frame->counts3[1] = lights->spot_highlights;
 }
 
 // ---- flags ----
@@ -122,6 +129,7 @@ static RowList cull_drawables(const World *world, const Frustum *frustum, Arena 
 typedef struct Parts {
     PacketView view;
     LightParts lights;
+    FrameRecord frame;
     LightGridPlan grid;
     MaterialPalette *palette;
     DrawLists draws, shadow;
@@ -242,20 +250,13 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     packet->brdf_mask = parts->palette->brdf_mask;
     packet->attenuation = environment->attenuation;
     packet->settings = desc->settings;
-    write_frame(&packet->frame, desc, &parts->view, environment);
-    packet->frame.counts[0] = lights->point_count;
-    packet->frame.counts[1] = lights->spot_count;
-    packet->frame.counts[2] = lights->directional_count;
-    packet->frame.counts3[0] = lights->point_count;
-    packet->frame.counts3[1] = lights->spot_count;
+    packet->frame = parts->frame;
     packet->frame.grid[0] = parts->grid.tiles_x;
     packet->frame.grid[1] = parts->grid.tiles_y;
     packet->frame.grid[2] = 1;
     packet->frame.grid[3] = parts->grid.input.tile_px;
     packet->frame.counts2[0] = sizes.materials;
     packet->frame.counts2[1] = sizes.instances;
-    packet->frame.counts2[2] = light_count;
-    packet->frame.counts2[3] = packet->tick;
 
     InstanceRecord *instances = PACKET_WRITE(packet, instances, InstanceRecord);
     packet_write_instances(desc->world, &parts->draws, instances);
@@ -316,7 +317,10 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
 
     parts.lights = packet_collect_lights(&desc, &parts.view, scratch);
     laps.lights_ms = lap_ms(&clock_ms);
-    parts.grid = light_grid_plan(&parts.lights.grid_input, scratch);
+    write_frame(&parts.frame, &desc, &parts.view, &parts.lights, &environment);
+    LightGridInput grid_input = light_grid_input(&parts.frame, parts.lights.lights,
+                                                 parts.lights.spots, &desc.settings, scratch);
+    parts.grid = light_grid_plan(&grid_input, scratch);
     laps.grid_ms = lap_ms(&clock_ms);
 
     parts.palette = packet_collect_materials(desc.world, scratch);

@@ -1,6 +1,6 @@
 // packet_lights.c: the light manager: from the level's lights to those that this frame shades.
 // Data in: the light table (with derived columns), settings, the view. Data out: light records in
-// a stable order (points, spots, each in row order), the spheres for the light grid, the GI lights,
+// a stable order (points, spots, each in row order), the GI lights,
 // the directional lights. Called by: packet_build. Does not: merge or rank lights, or decide tiles.
 //
 // Everything is done on whole arrays: one pass over the table computes the candidates (bounding
@@ -92,7 +92,6 @@ static const LightRecord dummy_light = {{0.0f, -1e6f, 0.0f, 1.0f}, {0.0f, 0.0f, 
 
 static void pack_local_lights(LightParts *parts, const LightTable *light,
                               const LightCandidates *candidates, const u32 *visible,
-                              const PacketView *view, const RenderSettings *settings,
                               Arena *scratch) {
     u32 count = parts->visible;
     u32 *order = ARENA_PUSH(scratch, u32, count);
@@ -104,31 +103,14 @@ static void pack_local_lights(LightParts *parts, const LightTable *light,
 
     parts->lights = ARENA_PUSH(scratch, LightRecord, count + 1);
     parts->spots = ARENA_PUSH(scratch, SpotRecord, parts->spot_count);
-    f32 *x = ARENA_PUSH_COLUMN(scratch, f32, count), *y = ARENA_PUSH_COLUMN(scratch, f32, count),
-        *z = ARENA_PUSH_COLUMN(scratch, f32, count),
-        *radius = ARENA_PUSH_COLUMN(scratch, f32, count);
     for (u32 i = 0; i < count; i++) {
         u32 row = order[i];
         parts->lights[i] = make_record(light, candidates, row);
         if (i >= parts->point_count) parts->spots[i - parts->point_count] = make_spot(light, row);
-        Vec3 from_eye = vec3_sub(vec3(candidates->x[row], candidates->y[row], candidates->z[row]),
-                                 view->position);
-        x[i] = vec3_dot(from_eye, view->right);
-        y[i] = vec3_dot(from_eye, view->up);
-        z[i] = -vec3_dot(from_eye, view->forward);
-        radius[i] = candidates->radius[row];
     }
     parts->lights[count] = dummy_light;
-    parts->grid_input = (LightGridInput){.x = x,
-                                         .y = y,
-                                         .z = z,
-                                         .radius = radius,
-                                         .count = count,
-                                         .point_count = parts->point_count,
-                                         .tile_px = settings_tile_px(settings),
-                                         .near = view->near,
-                                         .scale_x = 1.0f / view->tan_x,
-                                         .scale_y = 1.0f / view->tan_y};
+    parts->point_highlights = parts->point_count;
+    parts->spot_highlights = parts->spot_count;
 }
 
 // The first that casts a shadow comes first, the others in row order.
@@ -185,9 +167,7 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
     parts.visible =
         cull_spheres(desc->settings.light_culling ? &view->frustum : &everywhere, candidates.x,
                      candidates.y, candidates.z, candidates.radius, count, visible);
-    pack_local_lights(&parts, light, &candidates, visible, view, &desc->settings, scratch);
-    parts.grid_input.width_px = desc->width_px;
-    parts.grid_input.height_px = desc->height_px;
+    pack_local_lights(&parts, light, &candidates, visible, scratch);
     collect_directionals(&parts, light, &candidates);
     return parts;
 }

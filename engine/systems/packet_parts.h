@@ -25,7 +25,7 @@ typedef struct LightParts {
     u32 point_count, spot_count;
     LightRecord *lights; // [point_count + spot_count + 1]: points, spots, the dummy
     SpotRecord *spots;   // [spot_count]
-    LightGridInput grid_input;
+    u32 point_highlights, spot_highlights; // the first so many of each have a highlight
     LightRecord *gi_lights; // [gi_count]
     u32 gi_count;
     DirectionalRecord directionals[DIRECTIONALS_CAP];

@@ -73,12 +73,25 @@ u32 cull_spheres(const Frustum *frustum, const f32 *x, const f32 *y, const f32 *
 // within the view along this axis.
 bool sphere_bounds_axis(f32 center, f32 center_z, f32 radius, f32 near, f32 scale, f32 *ndc_min,
                         f32 *ndc_max);
+// Spots as cones: the part of the ball of radius `reach` around the tip that is within the half
+// angle of the axis. View space, [count - point_count].
+typedef struct LightCones {
+    f32 *tip_x, *tip_y, *tip_z, *axis_x, *axis_y, *axis_z; // axis: unit
+    f32 *cos_half, *sin_half, *reach;
+} LightCones;
 typedef struct LightGridInput {
-    const f32 *x, *y, *z, *radius; // view space; [count]
+    const f32 *x, *y, *z, *radius; // view space; [count]; a spot's is its cone's smallest sphere
     u32 count, point_count;        // lights >= point_count are spots
     u32 width_px, height_px, tile_px;
     f32 near, scale_x, scale_y;    // projection scales
+    u32 highlight_points, highlight_spots; // the first so many points and spots have a highlight
+    LightCones cones;              // all NULL = spots are taken for their spheres
 } LightGridInput;
+// From a packet's records (light_grid_input.c): counts, camera and lens from `frame`, tile size
+// from the settings. Memory from the arena.
+LightGridInput light_grid_input(const FrameRecord *frame, const LightRecord *lights,
+                                const SpotRecord *spots, const RenderSettings *settings,
+                                Arena *arena);
 typedef struct LightGrid {
     CellRecord *tiles; // [tiles_x * tiles_y], rows from the upper left
     u32 *indices;      // ascending within a tile
