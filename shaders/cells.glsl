@@ -1,0 +1,134 @@
+// cells.glsl: which lights a pixel has: its cell of the light grid (tile or cluster), the cell's
+// list, and the sum of that list's lights.
+//
+// Needs in the shader that includes it, before anything else:
+//   #extension GL_KHR_shader_subgroup_basic : require
+//   #extension GL_KHR_shader_subgroup_ballot : require
+//   #extension GL_KHR_shader_subgroup_arithmetic : require
+// Lists come from the packet or from buffers that the device filled (DEVICE_LISTS). CLUSTERED 0: a
+// cell is a tile; 1: a tile and a slice of depth; 2: the pixel says which (PIXEL_CLUSTERS).
+// Light indices are made uniform over the subgroup: then lights are scalar reads.
+#ifndef CELLS_GLSL
+#define CELLS_GLSL
+#include "light.glsl"
+
+// Shaders that make the lists define it as nothing.
+#ifndef LIST_ACCESS
+#define LIST_ACCESS readonly
+#endif
+layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
+layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBuffer {
+    uint light_indices[];
+};
+layout(std430, set = 0, binding = BINDING_LIST_CELLS) LIST_ACCESS buffer ListCellBuffer {
+    CellRecord list_cells[];
+};
+layout(std430, set = 0, binding = BINDING_LIST_INDICES) LIST_ACCESS buffer ListIndexBuffer {
+    uint list_indices[];
+};
+layout(std430, set = 0, binding = BINDING_PIXEL_CLUSTERS) LIST_ACCESS buffer PixelClusterBuffer {
+    uint pixel_clusters[];
+};
+
+// Which sample of a multisampled pixel PIXEL_CLUSTERS is asked for: one that the fragment covers
+// (findLSB(gl_SampleMaskIn[0])).
+uint cell_sample = 0u;
+
+// Slice of depth, see FrameRecord.slices.
+uint cell_slice(float view_depth) {
+    float slice = floor(log2(view_depth) * frame.slices.x + frame.slices.y);
+    return uint(clamp(slice, 0.0, float(frame.grid.z) - 1.0));
+}
+
+// The cell of a pixel at a view depth in m.
+uint cell_of(uvec2 pixel, float view_depth) {
+    if (CLUSTERED == 2u)
+        return pixel_clusters[(pixel.y * uint(frame.viewport.x) + pixel.x) * SAMPLES + cell_sample];
+    uvec2 tile = pixel >> TILE_SHIFT;
+    uint cell = tile.y * frame.grid.x + tile.x;
+    if (CLUSTERED == 1u) cell += cell_slice(view_depth) * frame.grid.x * frame.grid.y;
+    return cell;
+}
+
+// CellRecord.list.
+uvec4 cell_list(uint cell) {
+    return DEVICE_LISTS != 0u ? list_cells[cell].list : cells[cell].list;
+}
+// Entry of a list: index of a light.
+uint cell_index(uint at) { return DEVICE_LISTS != 0u ? list_indices[at] : light_indices[at]; }
+
+// Where the four classes of a list end: points, diffuse points, spots, diffuse spots.
+uvec4 cell_classes(uvec4 list) {
+    uint points = list.x + list.y, all = points + list.z;
+    return uvec4(points - (list.w & 0xFFFFu), points, all - (list.w >> 16u), all);
+}
+
+// The list of all lights: an entry is its own place.
+uvec4 cell_list_all() {
+    uvec2 diffuse = flow.counts.xy - flow.counts3.xy;
+    diffuse = mix(diffuse, uvec2(0u), greaterThan(diffuse, uvec2(0xFFFFu)));
+    return uvec4(0u, flow.counts.xy, diffuse.x | diffuse.y << 16u);
+}
+
+// The software driver stops an invocation after 65,535 iterations of loops.
+const uint CELL_ITERATIONS_SAFE = 60000u;
+
+vec3 cell_light_list(Surface s, uvec4 list, bool all) {
+    vec3 sum = vec3(0.0);
+    uvec4 ends = cell_classes(list);
+    uint point_count = flow.counts.x;
+    uint at = list.x;
+    for (; at < ends.x; at++) {
+        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        sum += light_point(s, light_position(index), light_color(index));
+    }
+    for (; at < ends.y; at++) {
+        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        sum += light_point_diffuse(s, light_position(index), light_color(index));
+    }
+    if (SPOTS == 0u) return sum;
+    for (; at < ends.z; at++) {
+        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        sum += light_spot(s, light_position(index), light_color(index),
+                          spot_direction(index - point_count), spot_edge(index - point_count));
+    }
+    for (; at < ends.w; at++) {
+        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        sum += light_spot_diffuse(s, light_position(index), light_color(index),
+                                  spot_direction(index - point_count),
+                                  spot_edge(index - point_count));
+    }
+    return sum;
+}
+
+// Sum of the lights of a cell, for fragment shaders and others whose lanes may be off. Pixels of a
+// subgroup that lie in several cells take turns, a cell at a time.
+vec3 cell_light(Surface s, uint cell) {
+    uvec4 list = cell_list(cell);
+    bool all = false;
+    if (CLUSTERED != 0u) {
+        // So many cells with so many lights that the loops would be cut: all lights instead, which
+        // is the same sum (a light that is not in the list adds 0).
+        uint total = 0u;
+        for (;;) {
+            uint turn = subgroupBroadcastFirst(cell);
+            uint lights = subgroupBroadcastFirst(list.y + list.z);
+            total += lights;
+            if (turn == cell) break;
+        }
+        all = subgroupMax(total) > CELL_ITERATIONS_SAFE;
+        if (all) list = cell_list_all(), cell = 0u;
+    }
+    vec3 sum = vec3(0.0);
+    for (;;) {
+        uint turn = subgroupBroadcastFirst(cell);
+        if (turn == cell) {
+            uvec4 uniform_list = uvec4(subgroupBroadcastFirst(list.x), subgroupBroadcastFirst(list.y),
+                                       subgroupBroadcastFirst(list.z), subgroupBroadcastFirst(list.w));
+            sum = cell_light_list(s, uniform_list, all);
+            break;
+        }
+    }
+    return sum;
+}
+#endif
