@@ -44,11 +44,22 @@ typedef struct PacketText {
     u32 offset, length; // into the characters section
 } PacketText;
 
-// One step of the post chain, in order; what the numbers mean: the kind's row in render/post.c.
+// One step of the post chain, in the order in which they run: those on radiance (fog, heat), then
+// tone mapping, then gamma. Heat that lies outside the picture is not here.
+typedef enum PostKind { // the words of the component post, in their order
+    POST_FOG,           // 0..2 colour (radiance), 3 density 1/m, 4 start m, 5 height m (world y),
+                        // 6 falloff 1/m
+    POST_HEAT,          // 0..2 centre (world), 3 reach m, 4 shift px, 5 waves 1/m, 6 speed Hz,
+                        // 7..10 the pixels that it can change: left, top, right, bottom
+    POST_TONEMAP,
+    POST_GAMMA,         // 0 exponent, 0 = the sRGB curve
+    POST_KIND_COUNT
+} PostKind;
 typedef struct PacketPost {
-    u32 kind; // PostKind of world/components.h
+    u32 kind; // PostKind
     f32 values[11];
 } PacketPost;
+#define PACKET_POSTS_CAP 64 // more is refused: each is a pass over the picture
 
 // What the light manager did with a local light, for debug pictures (only if the view asks).
 typedef enum LightFate {
@@ -90,7 +101,7 @@ typedef enum PacketFlags {
     X(spots, SpotRecord)                                                                           \
     X(directionals, DirectionalRecord)                                                             \
     X(cells, CellRecord)    /* light grid: tiles or clusters, from the upper left */               \
-    X(light_indices, u32)   /* into lights; for GPU clusters: Morton order */                      \
+    X(light_indices, u32)   /* into lights: the cells' lists, then the hierarchy's order, if any */ \
     X(grid_nodes, GridNode) /* GPU clusters, many lights: hierarchy over that order */             \
     X(posts, PacketPost)                                                                           \
     X(light_marks, PacketLightMark) /* for debug pictures, else empty */                           \
@@ -103,7 +114,9 @@ typedef enum PacketFlags {
 typedef struct PacketCounts {
     u32 lights_total, lights_visible, lights_shaded; // local lights: level, frustum, in lists
     // Light manager: what each stage took away, what it added.
+    // lights_visible = occluded + merged + dropped + over budget + those of the level that are kept.
     u32 lights_occluded, lights_merged_pairs, lights_dropped, lights_over_budget;
+    u32 lights_merged; // of the level, shown by nothing but the merger of their pair
     u32 lights_fading;                           // shown with less than their full brightness
     u32 lights_near, lights_between, lights_far; // levels of detail of those that are shaded
     f32 merge_error; // sum of the predicted errors of all merged pairs, 1 = white

@@ -125,14 +125,23 @@ RendererStats renderer_stats(const Renderer *renderer) { return renderer->stats;
 static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratch,
                          RenderSettings settings) {
     u64 mark = arena_mark(scratch);
-    Packet *copy = arena_push(scratch, packet->size, CACHE_LINE);
+    // Lists for another path may be missing: one layer of empty cells of its own serves them all.
+    u32 cell_count = packet->frame.grid[0] * packet->frame.grid[1];
+    u64 cells_at = ALIGN_UP(packet->size, CACHE_LINE), cells_size = cell_count * sizeof(CellRecord);
+    Packet *copy = arena_push(scratch, cells_at + cells_size, CACHE_LINE);
     memcpy(copy, packet, packet->size);
+    copy->cells = (PacketSection){(u32)cells_at, cell_count};
+    copy->light_indices.count = 0;
+    copy->grid_nodes.count = 0;
     copy->settings = settings;
     // One light of each kind that is there (counting the dummy): thousands would make the slow
     // paths' first frame take seconds, and the shaders compile just the same.
     copy->frame.counts[0] = 1;
     copy->frame.counts[1] = MIN(copy->frame.counts[1], 1);
-    memset(PACKET_WRITE(copy, cells, CellRecord), 0, copy->cells.count * sizeof(CellRecord));
+    copy->frame.counts[3] = 0;
+    for (u32 i = 0; i < 4; i++)
+        copy->frame.counts3[i] = i < 2 ? MIN(copy->frame.counts3[i], copy->frame.counts[i]) : 0;
+    copy->frame.grid[2] = 1;
     bool ok = renderer_render_image(renderer, copy, NULL, NULL);
     arena_rewind(scratch, mark);
     return ok;
@@ -141,7 +150,8 @@ static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratc
 bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress progress,
                       void *user) {
     Arena scratch;
-    if (!arena_create(&scratch, "warm-up", MAX(packet->size * 2, MIB(64)))) return false;
+    u64 cells_size = (u64)packet->frame.grid[0] * packet->frame.grid[1] * sizeof(CellRecord);
+    if (!arena_create(&scratch, "warm-up", packet->size * 2 + cells_size + MIB(64))) return false;
     u32 total = PATH_COUNT + VIEW_COUNT - 1, done = 0;
     bool ok = true;
     for (u32 path = 0; path < PATH_COUNT && ok; path++) {
