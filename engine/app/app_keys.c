@@ -29,9 +29,16 @@ static void set_path(App *app, RenderPath path) {
     app->settings.path = path;
     say_setting(app, "path", path);
 }
-static void key_forward(App *app) { set_path(app, PATH_FORWARD); }
-static void key_deferred(App *app) { set_path(app, PATH_DEFERRED); }
-static void key_tiled(App *app) { set_path(app, PATH_TILED_DEFERRED); }
+// Keys 1 to 8: the paths in the order of RenderPath.
+_Static_assert(PATH_COUNT == 8, "a key for each path");
+static void key_path_1(App *app) { set_path(app, 0); }
+static void key_path_2(App *app) { set_path(app, 1); }
+static void key_path_3(App *app) { set_path(app, 2); }
+static void key_path_4(App *app) { set_path(app, 3); }
+static void key_path_5(App *app) { set_path(app, 4); }
+static void key_path_6(App *app) { set_path(app, 5); }
+static void key_path_7(App *app) { set_path(app, 6); }
+static void key_path_8(App *app) { set_path(app, 7); }
 
 static void turn_view(App *app, u32 by) {
     app->settings.view = (app->settings.view + by) % VIEW_COUNT;
@@ -84,9 +91,14 @@ typedef struct Key {
 } Key;
 
 static const Key keys[] = {
-    {'1', "1 2 3      forward, deferred, tiled deferred", key_forward},
-    {'2', NULL, key_deferred},
-    {'3', NULL, key_tiled},
+    {'1', "1 .. 4     forward, multipass, deferred, deferred volumes", key_path_1},
+    {'2', NULL, key_path_2},
+    {'3', NULL, key_path_3},
+    {'4', NULL, key_path_4},
+    {'5', "5 .. 8     tiled deferred, tiled forward, clustered deferred, forward", key_path_5},
+    {'6', NULL, key_path_6},
+    {'7', NULL, key_path_7},
+    {'8', NULL, key_path_8},
     {'V', "V B        next, previous debug view", key_next_view},
     {'B', NULL, key_last_view},
     {'L', "L          light culling in subgroups", key_subgroup_cull},

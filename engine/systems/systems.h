@@ -5,6 +5,7 @@
 // inside they may use jobs_for over disjoint rows.
 #ifndef LUZ_SYSTEMS_H
 #define LUZ_SYSTEMS_H
+#include "../base/sphere_bounds.h"
 #include "../asset/asset.h"
 #include "../frame/packet.h"
 #include "../world/input.h"
@@ -14,6 +15,7 @@ extern "C" {
 #endif
 
 typedef struct CollisionWorld CollisionWorld; // collision.c: static triangles in a grid, boxes
+typedef struct LightManagerState LightManagerState; // light_manager.h
 
 typedef struct SystemContext {
     World *world;
@@ -67,12 +69,7 @@ u32 cull_spheres(const Frustum *frustum, const f32 *x, const f32 *y, const f32 *
 
 // --- Light grid (light_grid.c) ---
 
-// Exact screen bounds of a sphere (specification of direct lighting, section 6.1, after Lengyel):
-// view-space centre and radius; projection scale = cot(fov/2) along the axis, near plane in m.
-// Result in NDC, clipped to [-1, 1]. Returns false if no part of it is in front of the near plane
-// within the view along this axis.
-bool sphere_bounds_axis(f32 center, f32 center_z, f32 radius, f32 near, f32 scale, f32 *ndc_min,
-                        f32 *ndc_max);
+// Screen bounds of a light's sphere: sphere_bounds_axis of base/sphere_bounds.h.
 // Spots as cones: the part of the ball of radius `reach` around the tip that is within the half
 // angle of the axis. View space, [count - point_count].
 typedef struct LightCones {
@@ -114,8 +111,25 @@ typedef struct PacketBuildDesc {
     u32 text_count;
     u32 last_stamp;             // world stamp of the previous packet: for the flags
     const f32 *previous_view_projection; // of the previous packet; NULL = there is none
+    const LightManagerState *light_manager; // NULL = no memory: decided afresh and applied at once
 } PacketBuildDesc;
-typedef struct PacketBuildTimes { f32 cull_ms, lights_ms, grid_ms, pack_ms; } PacketBuildTimes;
+// Steps of the light manager. merge, drop, budget: where the state decides them, the time of its
+// newest decision (one in six ticks), which is no part of the packet's own time.
+typedef enum LightStage {
+    LIGHT_STAGE_CANDIDATES,
+    LIGHT_STAGE_FRUSTUM,
+    LIGHT_STAGE_OCCLUSION,
+    LIGHT_STAGE_MERGE,
+    LIGHT_STAGE_DROP,
+    LIGHT_STAGE_BUDGET,
+    LIGHT_STAGE_INDIVIDUAL, // level of detail, classes, records
+    LIGHT_STAGE_COUNT
+} LightStage;
+typedef struct PacketBuildTimes {
+    f32 cull_ms, lights_ms, grid_ms, pack_ms;
+    f32 occluders_ms; // drawing them; a part of cull_ms
+    f32 light_stage_ms[LIGHT_STAGE_COUNT]; // parts of lights_ms
+} PacketBuildTimes;
 // The packet lies in `out`; scratch is used and given back. times may be NULL.
 const Packet *packet_build(const PacketBuildDesc *desc, Arena *out, Arena *scratch,
                            PacketBuildTimes *times);

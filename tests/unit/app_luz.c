@@ -133,7 +133,7 @@ TEST(app_luz, keys_change_settings) {
     RenderSettings *settings = luz_settings(luz);
     assert_true(app_key(luz, '1'));
     assert_int_equal(settings->path, PATH_FORWARD);
-    assert_true(app_key(luz, '3'));
+    assert_true(app_key(luz, '5'));
     assert_int_equal(settings->path, PATH_TILED_DEFERRED);
     assert_true(app_key(luz, 'B'));
     assert_int_equal(settings->view, VIEW_COUNT - 1);
