@@ -35,6 +35,18 @@ const GpuUsageInfo gpu_usage_table[GPU_USAGE_COUNT] = {
                               VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                                   VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, false},
+    [GPU_USAGE_DEPTH_STENCIL] = {"stencil target",
+                                 DEPTH_STAGES | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                 VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL, true},
+    // A resolve counts as colour output, whatever it resolves (Vulkan 1.3, 8.1).
+    [GPU_USAGE_DEPTH_RESOLVE] = {"depth resolve",
+                                 DEPTH_STAGES | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, true},
     [GPU_USAGE_SAMPLED_FRAGMENT] = {"sampled by fragments", VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, false},
@@ -105,8 +117,9 @@ static void usage_scope(GpuUsage usage, bool is_texture, bool is_depth,
     }
 }
 
-VkImageMemoryBarrier2 gpu_image_barrier(VkImage image, bool is_depth, GpuUsage from, GpuUsage to,
+VkImageMemoryBarrier2 gpu_image_barrier(VkImage image, GpuFormat format, GpuUsage from, GpuUsage to,
                                         bool discard) {
+    bool is_depth = gpu_format_is_depth(format);
     LUZ_ASSERT(to != GPU_USAGE_NONE && gpu_usage_table[to].layout != VK_IMAGE_LAYOUT_UNDEFINED);
     VkImageMemoryBarrier2 barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
@@ -115,8 +128,8 @@ VkImageMemoryBarrier2 gpu_image_barrier(VkImage image, bool is_depth, GpuUsage f
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image,
-        .subresourceRange = {is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT, 0,
-                             VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+        .subresourceRange = {gpu_format_aspects(format), 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS},
     };
     usage_scope(from, true, is_depth, &barrier.srcStageMask, &barrier.srcAccessMask);
     usage_scope(to, true, is_depth, &barrier.dstStageMask, &barrier.dstAccessMask);
@@ -165,8 +178,8 @@ void gpu_cmd_barriers(GpuCommands *cmd, const GpuBarrier *barriers, u32 count) {
                 gpu_record_barriers(gpu, cmd->buffer, NULL, images, image_count);
                 image_count = 0;
             }
-            images[image_count++] = gpu_image_barrier(
-                texture->image, gpu_format_is_depth(texture->format), b->from, b->to, b->discard);
+            images[image_count++] =
+                gpu_image_barrier(texture->image, texture->format, b->from, b->to, b->discard);
         } else {
             (void)gpu_buffer_get(gpu, b->buffer); // asserts that it is alive
             VkPipelineStageFlags2 stages;

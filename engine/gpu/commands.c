@@ -17,6 +17,13 @@ static VkRenderingAttachmentInfo attachment(const Gpu *gpu, const GpuTarget *tar
         .loadOp = target->clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD,
         .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
     };
+    if (target->resolve.id) {
+        bool is_depth = gpu_format_is_depth(texture->format);
+        info.resolveMode = is_depth ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : VK_RESOLVE_MODE_AVERAGE_BIT;
+        info.resolveImageView = gpu_texture_get(gpu, target->resolve)->target_view;
+        info.resolveImageLayout =
+            gpu_usage_layout(is_depth ? GPU_USAGE_DEPTH_RESOLVE : GPU_USAGE_COLOR_TARGET, is_depth);
+    }
     for (u32 i = 0; i < 4; i++) {
         if (texture && texture->format == GPU_FORMAT_R32U)
             info.clearValue.color.uint32[i] = (u32)target->clear_value[i];
@@ -30,7 +37,8 @@ void gpu_cmd_begin_rendering(GpuCommands *cmd, const GpuRendering *rendering) {
     Gpu *gpu = cmd->gpu;
     LUZ_ASSERT(!cmd->is_rendering && rendering->target_count <= GPU_TARGETS_CAP);
     u32 width = rendering->width, height = rendering->height;
-    VkRenderingAttachmentInfo colors[GPU_TARGETS_CAP], depth;
+    VkRenderingAttachmentInfo colors[GPU_TARGETS_CAP], depth, stencil;
+    bool has_stencil = false;
     u32 color_count = rendering->to_swapchain ? 1 : rendering->target_count;
     if (rendering->to_swapchain) {
         LUZ_ASSERT(gpu->swap.is_awaited); // acquired in this frame
@@ -42,12 +50,26 @@ void gpu_cmd_begin_rendering(GpuCommands *cmd, const GpuRendering *rendering) {
         colors[i] = attachment(gpu, &rendering->targets[i], rendering->to_swapchain);
     if (rendering->depth.texture.id) {
         depth = attachment(gpu, &rendering->depth, false);
-        depth.imageLayout = gpu_usage_layout(
-            rendering->depth_read_only ? GPU_USAGE_DEPTH_TEST : GPU_USAGE_DEPTH_TARGET, true);
+        has_stencil =
+            gpu_format_has_stencil(gpu_texture_get(gpu, rendering->depth.texture)->format);
+        LUZ_ASSERT(!rendering->stencil || (has_stencil && rendering->depth_read_only));
+        depth.imageLayout = gpu_usage_layout(rendering->stencil           ? GPU_USAGE_DEPTH_STENCIL
+                                             : rendering->depth_read_only ? GPU_USAGE_DEPTH_TEST
+                                                                          : GPU_USAGE_DEPTH_TARGET,
+                                             true);
         depth.clearValue.depthStencil =
             (VkClearDepthStencilValue){rendering->depth.clear_value[0], 0};
         // Storing is a write, which a read-only depth must not see.
         if (rendering->depth_read_only) depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;
+        // A stencil comes with its depth, so that pipelines need not tell passes apart; only a
+        // rendering that asks for it finds anything there.
+        stencil = depth;
+        stencil.resolveMode = VK_RESOLVE_MODE_NONE;
+        if (rendering->stencil) {
+            stencil.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+            stencil.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+            stencil.clearValue.depthStencil = (VkClearDepthStencilValue){0.0f, 0};
+        }
     }
     // Default size: that of the first target.
     if (!width || !height) {
@@ -63,6 +85,7 @@ void gpu_cmd_begin_rendering(GpuCommands *cmd, const GpuRendering *rendering) {
         .colorAttachmentCount = color_count,
         .pColorAttachments = colors,
         .pDepthAttachment = rendering->depth.texture.id ? &depth : NULL,
+        .pStencilAttachment = has_stencil ? &stencil : NULL,
     };
     gpu->vk.vkCmdBeginRendering(cmd->buffer, &info);
     cmd->is_rendering = true;

@@ -170,6 +170,18 @@ static void device_read_info(Gpu *gpu) {
     vkGetPhysicalDeviceFormatProperties(gpu->physical, VK_FORMAT_R32G32B32A32_SFLOAT, &format);
     info->rgba32f_blend =
         (format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
+    const VkFormat sampled[] = {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_D32_SFLOAT};
+    const VkImageUsageFlags usage[] = {VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
+    info->samples_4 = true;
+    for (u32 i = 0; i < COUNT_OF(sampled); i++) {
+        VkImageFormatProperties limits;
+        VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+            gpu->physical, sampled[i], VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+            usage[i] | VK_IMAGE_USAGE_SAMPLED_BIT, 0, &limits);
+        info->samples_4 = info->samples_4 && result == VK_SUCCESS &&
+                          (limits.sampleCounts & VK_SAMPLE_COUNT_4_BIT);
+    }
     info->max_storage_buffer_size = gpu->limits.maxStorageBufferRange;
     info->max_texture_side = gpu->limits.maxImageDimension2D;
     info->timestamps = timestamp_bits > 0 && gpu->limits.timestampPeriod > 0.0f;

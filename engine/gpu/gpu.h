@@ -63,6 +63,7 @@ typedef struct GpuInfo {
     // Subgroup basic, ballot, shuffle and arithmetic operations work in these stages.
     bool subgroup_compute, subgroup_fragment;
     bool depth_clamp;                // GpuPipelineDesc.depth_clamp works (else it is ignored)
+    bool samples_4;                  // 4 samples a pixel, of RGBA16F and D32F
 } GpuInfo;
 
 // NULL with LOG GPU_NONE that says what to do (install a driver package ...) when there is no
@@ -94,6 +95,7 @@ typedef enum GpuFormat {
     GPU_FORMAT_R32U,
     GPU_FORMAT_R8,
     GPU_FORMAT_D32F,
+    GPU_FORMAT_D32F_S8, // with a stencil; shaders see its depth only
     GPU_FORMAT_SWAPCHAIN, // of pipelines that draw to the window (BGRA8 or RGBA8, not sRGB)
     GPU_FORMAT_COUNT
 } GpuFormat;
@@ -128,6 +130,7 @@ typedef struct GpuTextureDesc {
     GpuFormat format;
     u32 width, height, depth; // depth 0/1 = 2D, else 3D
     u32 mip_count;            // 0 = 1
+    u32 samples;              // 0 = 1; 4 if GpuInfo.samples_4 (2D, 1 mip, no storage)
     bool render_target, storage, sampled; // sampled also allows copies to it
 } GpuTextureDesc;
 GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc);
@@ -185,19 +188,29 @@ typedef enum GpuDepth {
     GPU_DEPTH_NONE,
     GPU_DEPTH_WRITE, // GREATER_OR_EQUAL (reversed) and write
     GPU_DEPTH_TEST,  // GREATER_OR_EQUAL, no write
-    GPU_DEPTH_EQUAL, // EQUAL, no write
+    GPU_DEPTH_EQUAL,  // EQUAL, no write
+    GPU_DEPTH_BEHIND, // LESS_OR_EQUAL, no write: passes at or behind what is there
 } GpuDepth;
+// Closed volumes against the depth that is there ("z-fail", Everitt and Kilgard 2002). The stencil
+// must be 0 everywhere first; SHADE leaves it so.
+typedef enum GpuStencil {
+    GPU_STENCIL_NONE,
+    GPU_STENCIL_MARK,  // faces behind the surface count: back ones up, front ones down; draws no
+                       // colour. Not 0 = the surface is inside the volume
+    GPU_STENCIL_SHADE, // only where it is not 0, which becomes 0
+} GpuStencil;
 typedef enum GpuCull { GPU_CULL_BACK, GPU_CULL_NONE, GPU_CULL_FRONT } GpuCull;
 // Vertex input. MESH: stream 0 = MeshVertex of shaders/shared.h at locations 0 position, 1 normal
 // (uint), 2 uv, 3 tangent (uint), 4 color (unorm rgba8); stream 1 = InstanceRecord, one an
 // instance, at 5, 6, 7 (rows of the world matrix) and 8 (ids). UI: pos vec2, uv vec2, color rgba8
 // unorm (20 bytes) at 0, 1, 2. LIGHT, one an instance: stream 0 = LightRecord at 0, 1; stream 1 =
-// SpotRecord at 2, 3.
+// SpotRecord at 2, 3. VOLUME: the same, and stream 2 = position vec4 at 4, one a vertex.
 typedef enum GpuVertexLayout {
     GPU_VERTEX_NONE,
     GPU_VERTEX_MESH,
     GPU_VERTEX_UI,
-    GPU_VERTEX_LIGHT
+    GPU_VERTEX_LIGHT,
+    GPU_VERTEX_VOLUME
 } GpuVertexLayout;
 
 #define GPU_TARGETS_CAP   8
@@ -216,6 +229,8 @@ typedef struct GpuPipelineDesc {
     u32 target_count;
     GpuFormat depth_format; // GPU_FORMAT_NONE = no depth attachment
     GpuDepth depth;
+    GpuStencil stencil; // needs GPU_FORMAT_D32F_S8
+    u32 samples;        // 0 = 1; that of all targets
     GpuCull cull;
     GpuBlend blend; // of all targets
     f32 depth_bias, depth_bias_slope;
@@ -245,6 +260,8 @@ typedef enum GpuUsage {
     GPU_USAGE_COLOR_TARGET,
     GPU_USAGE_DEPTH_TARGET,
     GPU_USAGE_DEPTH_TEST,       // read-only attachment that shaders may sample at the same time
+    GPU_USAGE_DEPTH_STENCIL,    // the same, but its stencil is written (GpuRendering.stencil)
+    GPU_USAGE_DEPTH_RESOLVE,    // one sample of a multisampled depth is written to it
     GPU_USAGE_SAMPLED_FRAGMENT,
     GPU_USAGE_SAMPLED_COMPUTE,
     GPU_USAGE_STORAGE_COMPUTE,  // read and write
@@ -267,12 +284,20 @@ void gpu_cmd_barriers(GpuCommands *cmd, const GpuBarrier *barriers, u32 count);
 // True if going from one usage to the other needs a barrier (any write involved or layout change).
 bool gpu_usage_needs_barrier(GpuUsage from, GpuUsage to);
 
-typedef struct GpuTarget { GpuTexture texture; bool clear; f32 clear_value[4]; } GpuTarget;
+// resolve: of a multisampled texture, where its samples go at the end of the rendering: a colour's
+// average (usage COLOR_TARGET), a depth's first sample (usage DEPTH_RESOLVE).
+typedef struct GpuTarget {
+    GpuTexture texture;
+    bool clear;
+    f32 clear_value[4];
+    GpuTexture resolve;
+} GpuTarget;
 typedef struct GpuRendering {
     GpuTarget targets[GPU_TARGETS_CAP];
     u32 target_count;
     GpuTarget depth;      // texture {0} = none; clear_value[0]
     bool depth_read_only; // layout of GPU_USAGE_DEPTH_TEST
+    bool stencil;         // with depth_read_only: GPU_USAGE_DEPTH_STENCIL; begins with 0 everywhere
     bool to_swapchain;    // instead of targets[0]
     u32 width, height;
 } GpuRendering;

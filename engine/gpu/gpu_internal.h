@@ -89,10 +89,10 @@ typedef struct GpuTextureItem {
     GpuPoolItem pool;
     VkImage image;
     VkImageView view;        // all mips: sampling
-    VkImageView target_view; // mip 0: rendering and storage; equals view if there is one mip
+    VkImageView target_view; // mip 0, all aspects: rendering and storage; equals view if it can
     GpuAllocation allocation;
     GpuFormat format;
-    u32 width, height, depth, mip_count;
+    u32 width, height, depth, mip_count, samples;
     u64 upload_epoch;
 } GpuTextureItem;
 typedef struct GpuSamplerItem {
@@ -279,8 +279,12 @@ static inline u8 *gpu_memory_mapped(const GpuAllocation *a) {
 // --- resources.c ---
 
 VkFormat gpu_format_vk(const Gpu *gpu, GpuFormat format);
-static inline bool gpu_format_is_depth(GpuFormat format) { return format == GPU_FORMAT_D32F; }
-VkImageAspectFlags gpu_format_aspect(GpuFormat format);
+static inline bool gpu_format_is_depth(GpuFormat format) {
+    return format == GPU_FORMAT_D32F || format == GPU_FORMAT_D32F_S8;
+}
+static inline bool gpu_format_has_stencil(GpuFormat format) { return format == GPU_FORMAT_D32F_S8; }
+VkImageAspectFlags gpu_format_aspect(GpuFormat format);  // of shaders and copies: one aspect
+VkImageAspectFlags gpu_format_aspects(GpuFormat format); // of barriers and attachments: all
 u64 gpu_texture_bytes(const GpuTextureItem *texture);
 bool gpu_raw_buffer_create(Gpu *gpu, u32 heap, GpuMemoryUse use, u64 size, VkBufferUsageFlags usage,
                            const char *label, VkBuffer *buffer, GpuAllocation *allocation);
@@ -325,7 +329,7 @@ typedef struct GpuUsageInfo {
 } GpuUsageInfo;
 extern const GpuUsageInfo gpu_usage_table[GPU_USAGE_COUNT];
 VkImageLayout gpu_usage_layout(GpuUsage usage, bool is_depth);
-VkImageMemoryBarrier2 gpu_image_barrier(VkImage image, bool is_depth, GpuUsage from, GpuUsage to,
+VkImageMemoryBarrier2 gpu_image_barrier(VkImage image, GpuFormat format, GpuUsage from, GpuUsage to,
                                         bool discard);
 void gpu_record_barriers(Gpu *gpu, VkCommandBuffer buffer, const VkMemoryBarrier2 *memory,
                          const VkImageMemoryBarrier2 *images, u32 image_count);

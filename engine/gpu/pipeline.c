@@ -86,6 +86,18 @@ static const VkVertexInputBindingDescription light_streams[] = {
     {0, sizeof(LightRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
     {1, sizeof(SpotRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
 };
+static const VkVertexInputAttributeDescription volume_attributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, position)},
+    {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(LightRecord, color)},
+    {2, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(SpotRecord, direction)},
+    {3, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(SpotRecord, edge)},
+    {4, 2, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
+};
+static const VkVertexInputBindingDescription volume_streams[] = {
+    {0, sizeof(LightRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
+    {1, sizeof(SpotRecord), VK_VERTEX_INPUT_RATE_INSTANCE},
+    {2, 16, VK_VERTEX_INPUT_RATE_VERTEX},
+};
 #define VERTEX_LAYOUT(name)                                                                        \
     { COUNT_OF(name##_streams), COUNT_OF(name##_attributes), name##_streams, name##_attributes }
 static const struct {
@@ -97,6 +109,7 @@ static const struct {
     [GPU_VERTEX_MESH] = VERTEX_LAYOUT(mesh),
     [GPU_VERTEX_UI] = VERTEX_LAYOUT(ui),
     [GPU_VERTEX_LIGHT] = VERTEX_LAYOUT(light),
+    [GPU_VERTEX_VOLUME] = VERTEX_LAYOUT(volume),
 };
 
 // --- Building ---
@@ -136,14 +149,29 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
     };
     VkPipelineMultisampleStateCreateInfo samples = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT,
+        .rasterizationSamples = (VkSampleCountFlagBits)MAX(desc->samples, 1u), // bit = count
     };
+    bool marks = desc->stencil == GPU_STENCIL_MARK;
+    VkStencilOpState count = {.compareOp = VK_COMPARE_OP_ALWAYS, .writeMask = 0xFF};
+    VkStencilOpState count_back = count, count_front = count;
+    count_back.depthFailOp = VK_STENCIL_OP_INCREMENT_AND_WRAP;
+    count_front.depthFailOp = VK_STENCIL_OP_DECREMENT_AND_WRAP;
+    // Whatever the depth says: what was marked is used up.
+    VkStencilOpState take = {.compareOp = VK_COMPARE_OP_NOT_EQUAL,
+                             .passOp = VK_STENCIL_OP_ZERO,
+                             .depthFailOp = VK_STENCIL_OP_ZERO,
+                             .compareMask = 0xFF,
+                             .writeMask = 0xFF};
     VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = desc->depth != GPU_DEPTH_NONE,
         .depthWriteEnable = desc->depth == GPU_DEPTH_WRITE,
-        .depthCompareOp =
-            desc->depth == GPU_DEPTH_EQUAL ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_GREATER_OR_EQUAL,
+        .depthCompareOp = desc->depth == GPU_DEPTH_EQUAL    ? VK_COMPARE_OP_EQUAL
+                          : desc->depth == GPU_DEPTH_BEHIND ? VK_COMPARE_OP_LESS_OR_EQUAL
+                                                            : VK_COMPARE_OP_GREATER_OR_EQUAL,
+        .stencilTestEnable = desc->stencil != GPU_STENCIL_NONE,
+        .front = marks ? count_front : take,
+        .back = marks ? count_back : take,
     };
     VkPipelineColorBlendAttachmentState blends[GPU_TARGETS_CAP];
     VkFormat formats[GPU_TARGETS_CAP];
@@ -158,7 +186,7 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
             .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
             .dstAlphaBlendFactor =
                 is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
-            .colorWriteMask = 0xF,
+            .colorWriteMask = marks ? 0 : 0xF,
         };
     }
     VkPipelineColorBlendStateCreateInfo blend = {
@@ -177,6 +205,9 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
         .colorAttachmentCount = desc->target_count,
         .pColorAttachmentFormats = formats,
         .depthAttachmentFormat = gpu_format_vk(gpu, desc->depth_format),
+        .stencilAttachmentFormat = gpu_format_has_stencil(desc->depth_format)
+                                       ? gpu_format_vk(gpu, desc->depth_format)
+                                       : VK_FORMAT_UNDEFINED,
     };
     VkGraphicsPipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
@@ -283,6 +314,7 @@ static bool targets_are_possible(Gpu *gpu, const GpuPipelineDesc *desc) {
 GpuPipeline gpu_create_pipeline(Gpu *gpu, const GpuPipelineDesc *desc) {
     LUZ_ASSERT((desc->compute != NULL) != (desc->vertex != NULL)); // one of the two kinds
     LUZ_ASSERT(desc->push_size <= GPU_PUSH_SIZE_MAX && desc->spec_count <= GPU_SPEC_CAP);
+    LUZ_ASSERT(!desc->stencil || gpu_format_has_stencil(desc->depth_format));
     LUZ_ASSERT(desc->layout_count <= GPU_GROUPS_CAP && desc->target_count <= GPU_TARGETS_CAP);
     u32 shaders[2] = {0, 0};
     const char *names[2] = {desc->compute ? desc->compute : desc->vertex,

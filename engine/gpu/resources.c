@@ -23,7 +23,8 @@ static const struct {
     [GPU_FORMAT_R32U] = {VK_FORMAT_R32_UINT, 4},
     [GPU_FORMAT_R8] = {VK_FORMAT_R8_UNORM, 1},
     [GPU_FORMAT_D32F] = {VK_FORMAT_D32_SFLOAT, 4},
-    [GPU_FORMAT_SWAPCHAIN] = {VK_FORMAT_B8G8R8A8_UNORM, 4}, // headless; else the surface's
+    [GPU_FORMAT_D32F_S8] = {VK_FORMAT_D32_SFLOAT_S8_UINT, 4}, // of the depth, as it is copied
+    [GPU_FORMAT_SWAPCHAIN] = {VK_FORMAT_B8G8R8A8_UNORM, 4},   // headless; else the surface's
 };
 
 u32 gpu_format_bytes(GpuFormat format) {
@@ -39,6 +40,11 @@ VkFormat gpu_format_vk(const Gpu *gpu, GpuFormat format) {
 
 VkImageAspectFlags gpu_format_aspect(GpuFormat format) {
     return gpu_format_is_depth(format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+VkImageAspectFlags gpu_format_aspects(GpuFormat format) {
+    return gpu_format_aspect(format) |
+           (gpu_format_has_stencil(format) ? VK_IMAGE_ASPECT_STENCIL_BIT : 0u);
 }
 
 // --- Buffers ---
@@ -133,13 +139,14 @@ u64 gpu_buffer_size(const Gpu *gpu, GpuBuffer buffer) { return gpu_buffer_get(gp
 
 // --- Textures ---
 
-static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 mip_count, VkImageView *view) {
+static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 mip_count,
+                         VkImageAspectFlags aspects, VkImageView *view) {
     VkImageViewCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = item->image,
         .viewType = item->depth > 1 ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
         .format = gpu_format_vk(gpu, item->format),
-        .subresourceRange = {gpu_format_aspect(item->format), 0, mip_count, 0, 1},
+        .subresourceRange = {aspects, 0, mip_count, 0, 1},
     };
     if (!GPU_CHECK(gpu, item->pool.label,
                    gpu->vk.vkCreateImageView(gpu->device, &info, NULL, view))) {
@@ -175,8 +182,9 @@ static bool texture_create_image(Gpu *gpu, GpuTextureItem *item, u32 heap,
                      gpu->vk.vkBindImageMemory(gpu->device, item->image,
                                                item->allocation.block->memory,
                                                item->allocation.offset)) &&
-           texture_view(gpu, item, item->mip_count, &item->view) &&
-           (item->mip_count == 1 || texture_view(gpu, item, 1, &item->target_view));
+           texture_view(gpu, item, item->mip_count, gpu_format_aspect(item->format), &item->view) &&
+           ((item->mip_count == 1 && !gpu_format_has_stencil(item->format)) ||
+            texture_view(gpu, item, 1, gpu_format_aspects(item->format), &item->target_view));
 }
 
 GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
@@ -188,12 +196,16 @@ GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
     item->height = MAX(desc->height, 1u);
     item->depth = MAX(desc->depth, 1u);
     item->mip_count = MAX(desc->mip_count, 1u);
+    item->samples = MAX(desc->samples, 1u);
+    LUZ_ASSERT(item->samples == 1 ||
+               (item->samples == 4 && item->mip_count == 1 && item->depth == 1 && !desc->storage));
     VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     if (desc->render_target)
         usage |= gpu_format_is_depth(desc->format) ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                    : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     if (desc->storage) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-    if (desc->sampled) usage |= VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (desc->sampled) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    if (desc->sampled && item->samples == 1) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     LUZ_ASSERT(desc->render_target || desc->storage || desc->sampled);
     VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -202,7 +214,7 @@ GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
         .extent = {item->width, item->height, item->depth},
         .mipLevels = item->mip_count,
         .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .samples = (VkSampleCountFlagBits)item->samples, // the bit's value is the count
         .tiling = VK_IMAGE_TILING_OPTIMAL,
         .usage = usage,
     };
@@ -211,14 +223,16 @@ GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
         gpu->physical, info.format, info.imageType, info.tiling, usage, 0, &limits);
     bool fits = result == VK_SUCCESS && item->width <= limits.maxExtent.width &&
                 item->height <= limits.maxExtent.height && item->depth <= limits.maxExtent.depth &&
-                item->mip_count <= limits.maxMipLevels &&
+                item->mip_count <= limits.maxMipLevels && (limits.sampleCounts & item->samples) &&
                 gpu_texture_bytes(item) <= limits.maxResourceSize;
     u32 longest = MAX(MAX(item->width, item->height), item->depth);
     LUZ_ASSERT(longest >> (item->mip_count - 1) > 0); // more mips than the size has
     if (!fits)
-        LOG(GPU_LIMIT, "texture \"%s\" of %u x %u x %u, %u mips, format %d: not possible here (%s)",
-            desc->label, item->width, item->height, item->depth, item->mip_count, (int)desc->format,
-            result == VK_SUCCESS ? "too large" : gpu_result_name(result));
+        LOG(GPU_LIMIT,
+            "texture \"%s\" of %u x %u x %u, %u mips, %u samples, format %d: not possible here "
+            "(%s)",
+            desc->label, item->width, item->height, item->depth, item->mip_count, item->samples,
+            (int)desc->format, result == VK_SUCCESS ? "too large" : gpu_result_name(result));
     u32 heap = gpu_heap_index(gpu, desc->heap ? desc->heap : "textures");
     if (!fits || !texture_create_image(gpu, item, heap, &info)) {
         gpu_destroy_texture(gpu, (GpuTexture){id});
@@ -245,7 +259,7 @@ u64 gpu_texture_bytes(const GpuTextureItem *texture) {
     for (u32 mip = 0; mip < texture->mip_count; mip++)
         total += (u64)MAX(texture->width >> mip, 1u) * MAX(texture->height >> mip, 1u) *
                  MAX(texture->depth >> mip, 1u) * gpu_format_bytes(texture->format);
-    return total;
+    return total * texture->samples;
 }
 
 // --- Samplers ---

@@ -236,8 +236,8 @@ bool gpu_swapchain_acquire(Gpu *gpu, GpuCommands *cmd) {
 static void swapchain_barrier(Gpu *gpu, GpuUsage to) {
     GpuSwapchain *swap = &gpu->swap;
     GpuUsage from = swap->is_drawn ? GPU_USAGE_COLOR_TARGET : GPU_USAGE_NONE;
-    VkImageMemoryBarrier2 barrier =
-        gpu_image_barrier(swap->images[swap->image_index], false, from, to, !swap->is_drawn);
+    VkImageMemoryBarrier2 barrier = gpu_image_barrier(
+        swap->images[swap->image_index], GPU_FORMAT_SWAPCHAIN, from, to, !swap->is_drawn);
     gpu_record_barriers(gpu, gpu->commands.buffer, NULL, &barrier, 1);
 }
 

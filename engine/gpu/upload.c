@@ -153,11 +153,10 @@ static bool upload_mip(Gpu *gpu, const GpuTextureItem *item, u32 mip, const u8 *
 
 void gpu_upload_texture(Gpu *gpu, GpuTexture texture, const void *pixels, u64 size) {
     const GpuTextureItem *item = gpu_texture_get(gpu, texture);
-    bool is_depth = gpu_format_is_depth(item->format);
     LUZ_ASSERT(size == gpu_texture_bytes(item));
     if (!batch_begin(gpu)) return;
     VkImageMemoryBarrier2 barrier =
-        gpu_image_barrier(item->image, is_depth, GPU_USAGE_NONE, GPU_USAGE_COPY_TARGET, true);
+        gpu_image_barrier(item->image, item->format, GPU_USAGE_NONE, GPU_USAGE_COPY_TARGET, true);
     gpu_record_barriers(gpu, gpu->uploads[gpu->upload_slot].buffer, NULL, &barrier, 1);
     const u8 *mip_pixels = pixels;
     for (u32 mip = 0; mip < item->mip_count; mip++) {
@@ -165,7 +164,7 @@ void gpu_upload_texture(Gpu *gpu, GpuTexture texture, const void *pixels, u64 si
         mip_pixels += (u64)MAX(item->width >> mip, 1u) * MAX(item->height >> mip, 1u) *
                       MAX(item->depth >> mip, 1u) * gpu_format_bytes(item->format);
     }
-    barrier = gpu_image_barrier(item->image, is_depth, GPU_USAGE_COPY_TARGET,
+    barrier = gpu_image_barrier(item->image, item->format, GPU_USAGE_COPY_TARGET,
                                 GPU_USAGE_SAMPLED_FRAGMENT, false);
     gpu_record_barriers(gpu, gpu->uploads[gpu->upload_slot].buffer, NULL, &barrier, 1);
 }

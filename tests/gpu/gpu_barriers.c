@@ -42,6 +42,23 @@ TEST(gpu, every_pair_of_usages_has_its_barrier) {
     assert_false(gpu_usage_needs_barrier(GPU_USAGE_INDIRECT, GPU_USAGE_READ_VERTEX));
 }
 
+// Barriers of a depth with a stencil name both aspects; of all others the one there is.
+TEST(gpu, barriers_name_all_aspects) {
+    static const struct {
+        GpuFormat format;
+        VkImageAspectFlags aspects;
+    } cases[] = {
+        {GPU_FORMAT_RGBA8, VK_IMAGE_ASPECT_COLOR_BIT},
+        {GPU_FORMAT_D32F, VK_IMAGE_ASPECT_DEPTH_BIT},
+        {GPU_FORMAT_D32F_S8, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT},
+    };
+    for (u32 i = 0; i < COUNT_OF(cases); i++) {
+        VkImageMemoryBarrier2 barrier = gpu_image_barrier(
+            VK_NULL_HANDLE, cases[i].format, GPU_USAGE_NONE, GPU_USAGE_SAMPLED_FRAGMENT, false);
+        assert_int_equal(barrier.subresourceRange.aspectMask, cases[i].aspects);
+    }
+}
+
 // For every write -> read: what the barrier makes visible covers all reads that may follow without
 // another one.
 TEST(gpu, barriers_cover_the_reads_that_need_none) {
@@ -53,8 +70,9 @@ TEST(gpu, barriers_cover_the_reads_that_need_none) {
                 if ((to == GPU_USAGE_DEPTH_TEST || from == GPU_USAGE_DEPTH_TARGET) && !depth)
                     continue;
                 if (from == GPU_USAGE_COLOR_TARGET && depth) continue;
+                GpuFormat format = depth ? GPU_FORMAT_D32F : GPU_FORMAT_RGBA8;
                 VkImageMemoryBarrier2 barrier =
-                    gpu_image_barrier(VK_NULL_HANDLE, depth, (GpuUsage)from, (GpuUsage)to, false);
+                    gpu_image_barrier(VK_NULL_HANDLE, format, (GpuUsage)from, (GpuUsage)to, false);
                 assert_true(has_bits(barrier.srcStageMask, gpu_usage_table[from].stages));
                 assert_int_equal(barrier.oldLayout, gpu_usage_layout((GpuUsage)from, depth));
                 assert_int_equal(barrier.newLayout, gpu_usage_layout((GpuUsage)to, depth));
@@ -68,7 +86,7 @@ TEST(gpu, barriers_cover_the_reads_that_need_none) {
                     // And a later write waits for that read, whichever read it names.
                     if (next == GPU_USAGE_PRESENT) continue;
                     VkImageMemoryBarrier2 back = gpu_image_barrier(
-                        VK_NULL_HANDLE, depth, (GpuUsage)to, GPU_USAGE_COPY_TARGET, false);
+                        VK_NULL_HANDLE, format, (GpuUsage)to, GPU_USAGE_COPY_TARGET, false);
                     assert_true(has_bits(back.srcStageMask, read->stages));
                 }
             }
@@ -76,11 +94,11 @@ TEST(gpu, barriers_cover_the_reads_that_need_none) {
 
 TEST(gpu, discard_forgets_the_contents) {
     VkImageMemoryBarrier2 barrier = gpu_image_barrier(
-        VK_NULL_HANDLE, false, GPU_USAGE_SAMPLED_FRAGMENT, GPU_USAGE_COLOR_TARGET, true);
+        VK_NULL_HANDLE, GPU_FORMAT_RGBA8, GPU_USAGE_SAMPLED_FRAGMENT, GPU_USAGE_COLOR_TARGET, true);
     assert_int_equal(barrier.oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
     assert_true(has_bits(barrier.srcStageMask, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
-    ASSERT_DIES(
-        gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_NONE, false));
-    ASSERT_DIES(gpu_image_barrier(VK_NULL_HANDLE, false, GPU_USAGE_COLOR_TARGET, GPU_USAGE_INDIRECT,
-                                  false));
+    ASSERT_DIES(gpu_image_barrier(VK_NULL_HANDLE, GPU_FORMAT_RGBA8, GPU_USAGE_COLOR_TARGET,
+                                  GPU_USAGE_NONE, false));
+    ASSERT_DIES(gpu_image_barrier(VK_NULL_HANDLE, GPU_FORMAT_RGBA8, GPU_USAGE_COLOR_TARGET,
+                                  GPU_USAGE_INDIRECT, false));
 }
