@@ -2,6 +2,7 @@
 #ifndef COMMON_GLSL
 #define COMMON_GLSL
 #include "shared.h"
+#include "coding.glsl"
 
 layout(std140, set = 0, binding = BINDING_FRAME) uniform FrameBuffer { FrameRecord frame; };
 layout(std140, set = 0, binding = BINDING_MATERIALS) uniform MaterialBuffer {
@@ -39,18 +40,27 @@ layout(constant_id = SPEC_LIGHT_BLOCKS) const uint LIGHT_BLOCKS = 0;
 
 const float PI = 3.14159265358979;
 
-// Octahedral coding of unit vectors (Cigolle et al. 2014), components in [-1, 1].
-vec2 oct_encode(vec3 n) {
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
-    return n.z < 0.0 ? folded : p;
+// --- The palette: rows of MaterialRecord, from the uniform buffer or from a texture (one row of
+// texels a material, the members from left to right) ---
+layout(set = 0, binding = BINDING_PALETTE) uniform sampler2D palette;
+
+vec4 palette_texel(uint material, int member) {
+    return texelFetch(palette, ivec2(member, int(material)), 0);
 }
-vec3 oct_decode(vec2 e) {
-    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-    float t = max(-n.z, 0.0);
-    n.x += n.x >= 0.0 ? -t : t;
-    n.y += n.y >= 0.0 ? -t : t;
-    return normalize(n);
+vec4 palette_albedo(uint material) {
+    return PALETTE_TEXTURE != 0u ? palette_texel(material, 0) : materials[material].albedo;
+}
+vec4 palette_specular(uint material) {
+    return PALETTE_TEXTURE != 0u ? palette_texel(material, 1) : materials[material].specular;
+}
+vec4 palette_emissive(uint material) {
+    return PALETTE_TEXTURE != 0u ? palette_texel(material, 2) : materials[material].emissive;
+}
+vec4 palette_lobes(uint material) {
+    return PALETTE_TEXTURE != 0u ? palette_texel(material, 3) : materials[material].lobes;
+}
+vec4 palette_extra(uint material) {
+    return PALETTE_TEXTURE != 0u ? palette_texel(material, 4) : materials[material].extra;
 }
 
 // World position of a pixel from its depth, see FrameRecord.

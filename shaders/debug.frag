@@ -13,22 +13,92 @@ vec3 heat(float x) {
                  0.0, 1.0);
 }
 
+vec3 specular_of(GbufferPixel g) {
+    return LAYOUT < GBUFFER_LAYOUT_HALF5 ? palette_specular(g.material).rgb : g.specular.rgb;
+}
+float power_of(GbufferPixel g) {
+    return LAYOUT < GBUFFER_LAYOUT_HALF5 ? palette_specular(g.material).w : g.specular.w;
+}
+// What a pixel shines with by itself: the material's emission, or what the layout has summed up.
+vec3 emission_of(GbufferPixel g) {
+    return LAYOUT < GBUFFER_LAYOUT_HALF5
+               ? palette_emissive(g.material).rgb + palette_extra(g.material).yzw
+               : g.accumulated;
+}
+// Something that differs between materials: the index, or the bits of the attributes.
+uint material_key(GbufferPixel g) {
+    if (LAYOUT <= GBUFFER_LAYOUT_HALF5) return g.material;
+    return floatBitsToUint(g.specular.w) ^ (floatBitsToUint(g.specular.x) * 747796405u) ^
+           (floatBitsToUint(g.oren_nayar.x) >> 5u) ^ (floatBitsToUint(g.receives) >> 7u);
+}
+
+// One target as it is, made visible: whole colours as they are, signed numbers around grey, metres
+// in stripes, light by Reinhard.
+vec3 target_color(vec3 t) { return srgb_encode(t); }
+vec3 target_signed(vec3 t) { return t * 0.5 + 0.5; }
+vec3 target_metres(vec3 t) { return fract(t * 0.25); }
+vec3 target_light(vec3 t) { return srgb_encode(t / (1.0 + t)); }
+vec3 target_power(float t) { return vec3(log2(max(t, 1.0)) / 11.0); }
+
+vec3 target_visible(uint index, ivec2 pixel) {
+    vec4 t = index == 0u   ? texelFetch(gbuffer_0, pixel, 0)
+             : index == 1u ? texelFetch(gbuffer_1, pixel, 0)
+             : index == 2u ? texelFetch(gbuffer_2, pixel, 0)
+             : index == 3u ? texelFetch(gbuffer_3, pixel, 0)
+                           : texelFetch(gbuffer_4, pixel, 0);
+    if (LAYOUT == GBUFFER_LAYOUT_LEAN && index == 0u) return target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_WIDE)
+        return index == 0u   ? target_metres(t.xyz)
+               : index == 1u ? target_signed(t.xyz)
+                             : target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_PACKED && index == 1u) return target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_PACKED24 && index == 2u) return target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_HALF5)
+        return index == 0u   ? target_metres(t.xyz)
+               : index == 1u ? target_signed(t.xyz)
+               : index == 4u ? target_light(t.rgb)
+                             : target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_KILLZONE2 && index == 1u) return target_signed(vec3(t.xy, 0.0));
+    if (LAYOUT == GBUFFER_LAYOUT_KILLZONE2 && index == 3u) return target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_STARCRAFT2)
+        return index == 0u   ? target_light(t.rgb)
+               : index == 1u ? target_signed(t.xyz)
+                             : target_color(t.rgb);
+    if (LAYOUT == GBUFFER_LAYOUT_IL)
+        return index == 0u   ? target_color(t.rgb)
+               : index == 1u ? vec3(target_signed(vec3(t.xy, 0.0)).xy, target_power(t.z).x)
+               : index == 2u ? vec3(t.x / 100.0, fract(t.x), fract(t.y * 0.25))
+                             : target_light(t.rgb);
+    return t.rgb; // bytes
+}
+
 void main() {
-    GbufferPixel g = gbuffer_read(ivec2(gl_FragCoord.xy));
-    vec3 p = position_from_depth(gl_FragCoord.xy, g.depth);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    GbufferPixel g = gbuffer_read(pixel);
     vec3 color = vec3(0.0);
-    if (DEBUG_VIEW == 1u) color = srgb_encode(g.albedo);
-    if (DEBUG_VIEW == 2u) color = g.normal * 0.5 + 0.5;
-    if (DEBUG_VIEW == 3u) color = vec3(1.0 / (1.0 + 0.15 * frame.camera.w / max(g.depth, 1e-9)));
-    if (DEBUG_VIEW == 4u) {
-        uint h = (g.material + 1u) * 2654435761u;
+    if (DEBUG_VIEW == DEBUG_ALBEDO) color = srgb_encode(g.albedo);
+    if (DEBUG_VIEW == DEBUG_NORMAL) color = g.normal * 0.5 + 0.5;
+    if (DEBUG_VIEW == DEBUG_DEPTH)
+        color = vec3(
+            1.0 / (1.0 + 0.15 * dot(g.position - frame.camera.xyz, frame.ray_forward.xyz)));
+    if (DEBUG_VIEW == DEBUG_MATERIAL) {
+        uint h = (material_key(g) + 1u) * 2654435761u;
         color = vec3(uvec3(h >> 8u, h >> 16u, h >> 24u) & 255u) / 255.0;
     }
-    if (DEBUG_VIEW == 5u) color = fract(p * 0.25);
-    if (DEBUG_VIEW == 6u) {
-        vec3 e = materials[g.material].emissive.rgb + materials[g.material].extra.yzw;
+    if (DEBUG_VIEW == DEBUG_POSITION) color = fract(g.position * 0.25);
+    if (DEBUG_VIEW == DEBUG_EMISSIVE) {
+        vec3 e = emission_of(g);
         color = srgb_encode(e / (1.0 + e));
     }
+    // Highlights: colour, and power as a grey added to it.
+    if (DEBUG_VIEW == DEBUG_SPECULAR)
+        color = srgb_encode(clamp(specular_of(g), 0.0, 1.0)) * 0.75 + target_power(power_of(g)) * 0.25;
+    if (DEBUG_VIEW == DEBUG_MOTION) { // grey = none; roots, so that slow motion shows
+        vec2 m = LAYOUT == GBUFFER_LAYOUT_KILLZONE2 ? g.motion : camera_motion(g.position);
+        color = vec3(sign(m) * sqrt(min(abs(m), vec2(1.0))) * 0.5 + 0.5, 0.5);
+    }
+    if (DEBUG_VIEW >= DEBUG_GBUFFER_0 && DEBUG_VIEW < DEBUG_GBUFFER_0 + 5)
+        color = target_visible(DEBUG_VIEW - DEBUG_GBUFFER_0, pixel);
     if (g.depth <= 0.0) color = vec3(0.0);
     if (DEBUG_VIEW == 14u) {
         uvec2 tile = uvec2(gl_FragCoord.xy) >> TILE_SHIFT;

@@ -12,9 +12,8 @@ layout(location = 0) out vec4 out_color;
 
 void main() {
     GbufferPixel g = gbuffer_read(ivec2(gl_FragCoord.xy));
-    Surface s = surface_make(position_from_depth(gl_FragCoord.xy, g.depth), g.normal, g.albedo,
-                             g.material);
+    Surface s = gbuffer_surface(g);
     vec3 sum = SPOTS != 0u ? light_spot(s, in_position, in_light_color, in_direction, in_edge.x)
                            : light_point(s, in_position, in_light_color);
-    out_color = vec4(g.depth > 0.0 ? sum * materials[g.material].emissive.w : vec3(0.0), 0.0);
+    out_color = vec4(g.depth > 0.0 ? sum * gbuffer_receives(g) : vec3(0.0), 0.0);
 }

@@ -14,6 +14,6 @@ layout(location = 0) out vec4 out_color;
 
 void main() {
     vec4 albedo = material_albedo(in_material, in_uv, in_color);
-    out_color = vec4(texture(emissive_texture, in_uv).rgb * materials[in_material].extra.yzw,
+    out_color = vec4(texture(emissive_texture, in_uv).rgb * palette_extra(in_material).yzw,
                      albedo.a * 0.0);
 }

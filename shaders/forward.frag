@@ -55,6 +55,6 @@ void main() {
             sum += light_spot(s, light_position(point_count + i), light_color(point_count + i),
                               spot_direction(i), spot_edge(i));
     }
-    vec3 radiance = light_base(s, albedo.rgb, in_material) + sum * materials[in_material].emissive.w;
+    vec3 radiance = light_base(s, albedo.rgb, in_material) + sum * palette_emissive(in_material).w;
     out_color = vec4(radiance, albedo.a);
 }

@@ -8,6 +8,7 @@ layout(location = 1) out vec4 out_tangent;
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) out vec4 out_color;
 layout(location = 4) flat out uint out_material;
+layout(location = 5) out vec3 out_position; // world, for layouts that store something of it
 
 void main() {
     vec3 p = mesh_world_position();
@@ -17,4 +18,5 @@ void main() {
     out_uv = in_uv;
     out_color = in_color;
     out_material = in_ids.x;
+    out_position = LAYOUT != GBUFFER_LAYOUT_LEAN ? p : vec3(0.0);
 }

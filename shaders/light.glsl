@@ -27,6 +27,7 @@ layout(std140, set = 0, binding = BINDING_SPOT_BLOCK) uniform SpotBlock {
     SpotRecord spot_block[SPOT_BLOCK_CAP];
 };
 layout(set = 0, binding = BINDING_SHADOW_MAP) uniform sampler2DShadow shadow_map;
+layout(set = 0, binding = BINDING_ATTENUATION) uniform sampler2D falloff;
 
 const uint LOBE_PHONG = 1u; // values of Brdf in MaterialRecord.lobes.x
 
@@ -40,19 +41,25 @@ struct Surface {
     float n_dot_v;
 };
 
-Surface surface_make(vec3 position, vec3 normal, vec3 albedo, uint material) {
+// specular: rgb, w power; lobes: MaterialRecord.lobes.
+Surface surface_from(vec3 position, vec3 normal, vec3 albedo, vec4 specular, vec4 lobes,
+                     float fresnel) {
     Surface s;
     s.position = position;
     s.normal = normal;
     s.view = normalize(frame.camera.xyz - position);
     s.diffuse = albedo * (1.0 / PI);
-    vec4 specular = materials[material].specular;
-    s.lobes = materials[material].lobes;
+    s.lobes = lobes;
     s.specular = specular.rgb * s.lobes.y;
     s.power = specular.w;
-    s.fresnel = materials[material].extra.x;
+    s.fresnel = fresnel;
     s.n_dot_v = max(dot(normal, s.view), 1e-4);
     return s;
+}
+
+Surface surface_make(vec3 position, vec3 normal, vec3 albedo, uint material) {
+    return surface_from(position, normal, albedo, palette_specular(material),
+                        palette_lobes(material), palette_extra(material).x);
 }
 
 // (dot / sqrt(length2))^power, the cosine of a vector that need not be unit. The cheap way takes
@@ -97,9 +104,25 @@ vec3 brdf(Surface s, vec3 l, float n_dot_l, float highlight) {
     return s.diffuse * diffuse + specular * (highlight * specular_power(cosine, length2, s.power));
 }
 
+// Falloff from the table (what it holds: render/lookups.c), filtered linearly; its first and last
+// texels' centres are at 0 and 1.
+float falloff_texel(float x) {
+    return textureLod(falloff, vec2(clamp(x, 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5), 0.0).x;
+}
+float attenuation_lookup(float d2, float inv_d, float x) {
+    if (ATTENUATION == 1u) return falloff_texel(x);
+    if (ATTENUATION == 2u) {
+        float scale = frame.attenuation.w, rest = scale / (d2 * inv_d + scale);
+        return clamp(1.0 - x, 0.0, 1.0) * rest * rest * frame.coding.y / falloff_texel(1.0 - rest);
+    }
+    float window = falloff_texel(x);
+    return window * window * min(inv_d * inv_d, 1e4);
+}
+
 // From the squared distance and its inverse square root.
 float attenuation(float d2, float inv_d, float inv_range2) {
     float x = d2 * inv_range2;
+    if (ATTENUATION_LOOKUP != 0u) return attenuation_lookup(d2, inv_d, x);
     if (ATTENUATION == 1u) return clamp(1.0 - x, 0.0, 1.0);
     if (ATTENUATION == 2u) {
         vec3 k = frame.attenuation.xyz;
@@ -146,13 +169,17 @@ float shadow_visibility(vec3 position, vec3 normal) {
     return inside ? sum * 0.25 : 1.0;
 }
 
-vec3 light_directionals(Surface s) {
+float sun_visibility(Surface s) {
+    return SHADOW != 0u ? shadow_visibility(s.position, s.normal) : 1.0;
+}
+
+// sun: visibility of directional 0.
+vec3 light_directionals(Surface s, float sun) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < DIRECTIONAL_COUNT; i++) {
         vec3 l = directionals[i].direction.xyz;
         float n_dot_l = max(dot(s.normal, l), 0.0);
-        float visibility = 1.0;
-        if (SHADOW != 0u && i == 0u) visibility = shadow_visibility(s.position, s.normal);
+        float visibility = i == 0u ? sun : 1.0;
         sum += directionals[i].color.rgb * brdf(s, l, n_dot_l, 1.0) * (n_dot_l * visibility);
     }
     return sum;
@@ -160,8 +187,9 @@ vec3 light_directionals(Surface s) {
 
 // What does not come from local lights.
 vec3 light_base(Surface s, vec3 albedo, uint material) {
-    vec4 emissive = materials[material].emissive;
-    return emissive.rgb + albedo * frame.ambient.rgb + light_directionals(s) * emissive.w;
+    vec4 emissive = palette_emissive(material);
+    return emissive.rgb + albedo * frame.ambient.rgb +
+           light_directionals(s, sun_visibility(s)) * emissive.w;
 }
 
 // A light by index, from wherever this frame's lights fit.

@@ -10,7 +10,7 @@ layout(set = 1, binding = BINDING_EMISSIVE_TEXTURE) uniform sampler2D emissive_t
 // Albedo (linear rgb) and alpha; discards holes when the pipeline is for masked materials.
 vec4 material_albedo(uint material, vec2 uv, vec4 color) {
     vec4 texel = (TEXTURES & 1u) != 0u ? texture(albedo_texture, uv) : vec4(1.0);
-    vec4 factor = materials[material].albedo;
+    vec4 factor = palette_albedo(material);
     if (ALPHA_MASK != 0u && texel.a * color.a < factor.w) discard;
     return vec4(texel.rgb * factor.rgb * color.rgb, texel.a * color.a);
 }

@@ -7,5 +7,5 @@ layout(location = 0) in vec2 in_uv;
 layout(location = 1) flat in uint in_material;
 
 void main() {
-    if (texture(albedo_texture, in_uv).a < materials[in_material].albedo.w) discard;
+    if (texture(albedo_texture, in_uv).a < palette_albedo(in_material).w) discard;
 }

@@ -107,6 +107,25 @@ typedef struct MeshVertex {
 #define SPEC_POST          27 // of a post pass: a switch of its own (see shaders/post_*.frag)
 #define SPEC_COUNT         28
 
+// GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
+#define GBUFFER_LAYOUT_LEAN       0
+#define GBUFFER_LAYOUT_WIDE       1
+#define GBUFFER_LAYOUT_PACKED     2
+#define GBUFFER_LAYOUT_PACKED24   3
+#define GBUFFER_LAYOUT_HALF5      4
+#define GBUFFER_LAYOUT_KILLZONE2  5
+#define GBUFFER_LAYOUT_STARCRAFT2 6
+#define GBUFFER_LAYOUT_IL         7
+#define DEBUG_ALBEDO    1
+#define DEBUG_NORMAL    2
+#define DEBUG_DEPTH     3
+#define DEBUG_MATERIAL  4
+#define DEBUG_POSITION  5
+#define DEBUG_EMISSIVE  6
+#define DEBUG_SPECULAR  7
+#define DEBUG_MOTION    8
+#define DEBUG_GBUFFER_0 9 // to 13
+
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
 
@@ -145,12 +164,16 @@ SHARED_STRUCT(FrameRecord) {
     vec4 ambient;         // radiance times albedo; w exposure
     vec4 sky_zenith;      // rgb; w stars
     vec4 sky_horizon;     // rgb; w time in s (for the shader's own sparkle)
-    vec4 attenuation;     // polynomial kc, kl, kq
+    vec4 attenuation;     // polynomial kc, kl, kq; w distance scale of its table (render/lookups.c)
     vec4 shadow;          // 1 / size_px, normal offset in m, distance in m, depth bias
     vec4 slices;          // slice of a cluster = clamp(floor(log2(view depth) * x + y), 0, grid.z - 1);
                           // z: view depth at which slice 0 ends, w: factor from slice to slice
     vec4 vertex_lighting; // x: local lights come from the vertices beyond this distance in m
     mat4 previous_view_projection; // of the view's last packet (its own at first): motion
+    vec4 common_lobes;    // for G-buffers without a material index, the level's most common: x Brdf
+                          // (of those with a highlight), y Fresnel 0/1, z Oren-Nayar A, w B
+    vec4 coding;          // x: reach of coded distances in m, a power of two; y: factor of the
+                          // polynomial's table
     uvec4 counts;         // points, spots, directionals, clusters' hierarchy nodes (0 = none)
     uvec4 counts2;        // materials, instances, lights of the dummy index, tick
     uvec4 counts3;        // points with a highlight, spots with a highlight, node of the spots' root, 0

@@ -131,12 +131,10 @@ void main() {
         ivec2 pixel = pixel_of(round);
         ivec2 clamped = min(pixel, size - 1);
         GbufferPixel g = gbuffer_read(clamped);
-        vec3 position = position_from_depth(vec2(clamped) + 0.5, g.depth);
-        Surface s = surface_make(position, g.normal, g.albedo, g.material);
+        Surface s = gbuffer_surface(g);
         vec3 sum = shade_points(s, from_tile, any_lit ? first : middle, middle);
         if (SPOTS != 0u) sum += shade_spots(s, from_tile, any_lit ? middle : last, last, point_count);
-        vec3 radiance =
-            light_base(s, g.albedo, g.material) + sum * materials[g.material].emissive.w;
+        vec3 radiance = gbuffer_radiance(g, s, sum);
         if (pixel.x < size.x && pixel.y < size.y)
             imageStore(hdr, pixel, vec4(g.depth > 0.0 ? radiance : vec3(0.0), 1.0));
     }

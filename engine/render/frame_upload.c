@@ -164,11 +164,21 @@ static bool frame_group_update(Renderer *renderer) {
                                         : renderer->black,
                          .sampler = images[i].sampler};
     // Stand-ins until somebody fills them.
-    static const u32 stand_ins[] = {BINDING_DEPTH_MS, BINDING_PALETTE, BINDING_ATTENUATION,
-                                    BINDING_NORMAL_Z};
+    static const u32 stand_ins[] = {BINDING_DEPTH_MS};
     for (u32 i = 0; i < COUNT_OF(stand_ins); i++)
         desc.bindings[stand_ins[i]] =
             (GpuBinding){.texture = renderer->white, .sampler = renderer->sampler_nearest};
+    const struct {
+        u32 binding;
+        GpuTexture texture;
+        GpuSampler sampler;
+    } lookups[] = {{BINDING_PALETTE, renderer->palette, renderer->sampler_nearest},
+                   {BINDING_ATTENUATION, renderer->falloff, renderer->sampler_linear},
+                   {BINDING_NORMAL_Z, renderer->normal_z, renderer->sampler_nearest}};
+    for (u32 i = 0; i < COUNT_OF(lookups); i++)
+        desc.bindings[lookups[i].binding] = (GpuBinding){
+            .texture = lookups[i].texture.id ? lookups[i].texture : renderer->white,
+            .sampler = lookups[i].sampler};
     desc.bindings[BINDING_OVERLAY] = (GpuBinding){
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};
@@ -178,7 +188,9 @@ static bool frame_group_update(Renderer *renderer) {
 }
 
 bool frame_upload(Renderer *renderer, const Packet *packet) {
-    if (!targets_resize(renderer, packet) || !device_lists_resize(renderer, packet)) return false;
+    if (!targets_resize(renderer, packet) || !device_lists_resize(renderer, packet) ||
+        !lookups_update(renderer, packet))
+        return false;
     if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0))
         return false;
 #define X(id, section, Type, min_count)                                                            \
@@ -200,4 +212,5 @@ void frame_upload_destroy(Renderer *renderer) {
     for (u32 i = 0; i < RESOURCE_COUNT; i++)
         if (renderer->device_buffers[i].id) gpu_destroy_buffer(gpu, renderer->device_buffers[i]);
     if (renderer->readback.id) gpu_destroy_buffer(gpu, renderer->readback);
+    lookups_destroy(renderer);
 }

@@ -84,7 +84,7 @@ const PathRow path_table[PATH_COUNT] = {
     [PATH_CLUSTERED_FORWARD] = {"clustered_forward",
                                 {&shadow_pass, &forward_pass, &over_pass, &tonemap_pass}},
 };
-const PathRow debug_path = {"debug view", {&gbuffer_pass, &debug_pass}};
+const PathRow debug_path = {"debug view", {&shadow_pass, &gbuffer_pass, &debug_pass}};
 
 void pass_run(const PassContext *c, const Pass *pass) {
     if (pass->needed && !pass->needed(c)) return;

@@ -39,8 +39,9 @@ static void gbuffer_record(const PassContext *c) {
     gpu_cmd_end_rendering(c->cmd);
 }
 const Pass gbuffer_pass = {"gbuffer",
-                           {OVERWRITE_GBUFFER(COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET)},
-                           6,
+                           {OVERWRITE_GBUFFER(COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
+                            USE(SHADOW_MAP, SAMPLED_FRAGMENT)}, // layout killzone2
+                           7,
                            gbuffer_record,
                            NULL};
 

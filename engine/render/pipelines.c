@@ -54,7 +54,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                               .has_depth = true,
                               .depth = GPU_DEPTH_WRITE,
                               .cull = GPU_CULL_NONE,
-                              .vertex_layout = GPU_VERTEX_MESH},
+                              .vertex_layout = GPU_VERTEX_MESH,
+                              .spec_mask = SPEC_PALETTE},
     [PIPELINE_GBUFFER] = {.label = "gbuffer",
                           .vertex = "geometry.vert",
                           .fragment = "gbuffer.frag",
@@ -63,7 +64,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                           .depth = GPU_DEPTH_WRITE,
                           .vertex_layout = GPU_VERTEX_MESH,
                           .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) |
-                                       SPEC_BIT(SPEC_LAYOUT) | SPEC_PALETTE},
+                                       SPEC_BIT(SPEC_LAYOUT) | SPEC_BIT(SPEC_SHADOW) |
+                                       SPEC_PALETTE},
     [PIPELINE_FORWARD] = {.label = "forward",
                           .vertex = "forward.vert",
                           .fragment = "forward.frag",
@@ -138,7 +140,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                            .depth = GPU_DEPTH_TEST,
                            .blend = GPU_BLEND_ADD,
                            .vertex_layout = GPU_VERTEX_MESH,
-                           .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
+                           .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) |
+                                        SPEC_PALETTE},
     [PIPELINE_TONEMAP] = {.label = "tonemap",
                           .vertex = "fullscreen.vert",
                           .fragment = "tonemap.frag",
@@ -197,7 +200,8 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
     };
     memcpy(desc.spec, key->spec, sizeof key->spec);
     const GpuFormat *gbuffer = layout_table[key->spec[SPEC_LAYOUT]].targets;
-    while (row->to_gbuffer && gbuffer[desc.target_count]) {
+    while (row->to_gbuffer && desc.target_count < COUNT_OF(layout_table[0].targets) &&
+           gbuffer[desc.target_count]) {
         desc.targets[desc.target_count] = gbuffer[desc.target_count];
         desc.target_count++;
     }

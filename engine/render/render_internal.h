@@ -172,6 +172,8 @@ struct Renderer {
     GpuTexture *textures;
     u32 mesh_count, texture_count;
     GpuTexture white, flat_normal, black; // 1x1 stand-ins
+    GpuTexture falloff, normal_z, palette; // look-ups (lookups.c), made when first asked for
+    u64 falloff_key, palette_key;          // hash of what they hold
     MaterialGroup *material_groups;
     u32 material_group_count, material_group_cap;
 
@@ -213,6 +215,10 @@ void overlay_record(const PassContext *context, const Overlay *overlay);
 void text_record(const PassContext *context);
 bool text_upload(Renderer *renderer, const Packet *packet);
 void overlay_destroy(Renderer *renderer);
+
+// lookups.c: the textures that this packet's settings ask for, holding what it needs.
+bool lookups_update(Renderer *renderer, const Packet *packet);
+void lookups_destroy(Renderer *renderer);
 
 // passes_lists.c: buffers that the device fills, as large as the packet needs.
 bool device_lists_resize(Renderer *renderer, const Packet *packet);

@@ -84,6 +84,39 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
     frame->counts3[1] = lights->spot_highlights;
 }
 
+// ---- codings ----
+
+// What the tabulated polynomial needs (render/lookups.c): attenuation.w, the distance at which it
+// has bent half-way, and coding.y, 1 / a bound of (1-t)^2 (kc + kl d + kq d^2) for t in 0..1.
+static void write_falloff(FrameRecord *frame) {
+    f32 c = frame->attenuation[0], l = frame->attenuation[1], q = frame->attenuation[2];
+    f32 scale = 1.0f;
+    if (c > 0.0f && q > 0.0f)
+        scale = (sqrtf(l * l + 4.0f * c * q) - l) / (2.0f * q); // l d + q d^2 = c
+    else if (l > 0.0f)
+        scale = c > 0.0f ? c / l : q > 0.0f ? l / q : 1.0f;
+    else if (c > 0.0f)
+        scale = 1e6f; // a constant: t stays at 0
+    scale = CLAMP(scale, 1e-3f, 1e6f);
+    f32 bound = c + l * scale * 0.25f + q * scale * scale;
+    frame->attenuation[3] = scale;
+    frame->coding[1] = bound > 0.0f ? 1.0f / bound : 1.0f;
+}
+
+// Reach of coded distances: the power of two that covers all that the view draws opaquely. One of
+// its visible drawables' spheres decides, so it steps rarely.
+static f32 coding_reach(const DrawableTable *d, const DrawLists *draws, const PacketView *view) {
+    f32 farthest = 0.0f, reach = 1.0f;
+    for (u32 i = 0; i < draws->row_count; i++) {
+        u32 row = draws->rows[i];
+        Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
+                   d->bounds_z[row] - view->position.z};
+        farthest = MAX(farthest, vec3_length(to) + d->bounds_radius[row]);
+    }
+    while (reach < farthest && reach < 1e9f) reach *= 2.0f;
+    return reach;
+}
+
 // ---- flags ----
 
 // Stamps at or after the previous packet's: an edit between that packet and the next tick carries
@@ -251,6 +284,11 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     packet->attenuation = environment->attenuation;
     packet->settings = desc->settings;
     packet->frame = parts->frame;
+    memcpy(packet->frame.common_lobes, parts->palette->common_lobes,
+           sizeof packet->frame.common_lobes);
+    packet->frame.coding[0] = coding_reach(WORLD_TABLE(desc->world, Drawable, drawable),
+                                           &parts->draws, &parts->view);
+    write_falloff(&packet->frame);
     packet->frame.grid[0] = parts->grid.tiles_x;
     packet->frame.grid[1] = parts->grid.tiles_y;
     packet->frame.grid[2] = 1;

@@ -69,16 +69,37 @@ static u32 material_row(const MaterialTable *materials, Entity entity, MaterialM
     return memo->row;
 }
 
+// The lobes that most drawables of the level have (not of the view: they must not change while the
+// camera turns), for G-buffers that do not say which material a pixel has. Among equals the first.
+static void choose_common_lobes(MaterialPalette *palette, const u32 *uses) {
+    u32 most = 0, most_shiny = 0;
+    f32 *out = palette->common_lobes;
+    out[0] = BRDF_LAMBERT, out[1] = 0.0f, out[2] = 1.0f, out[3] = 0.0f;
+    for (u32 i = 0; i < palette->count; i++) {
+        const MaterialRecord *record = &palette->records[i];
+        if (palette->bindings[i].alpha_mode == ALPHA_BLEND) continue; // never in a G-buffer
+        if (uses[i] > most) {
+            most = uses[i];
+            out[1] = record->extra[0], out[2] = record->lobes[2], out[3] = record->lobes[3];
+        }
+        if (uses[i] > most_shiny && record->lobes[0] != (f32)BRDF_LAMBERT) {
+            most_shiny = uses[i];
+            out[0] = record->lobes[0];
+        }
+    }
+}
+
 MaterialPalette *packet_collect_materials(const World *world, Arena *scratch) {
     const MaterialTable *materials = WORLD_TABLE(world, Material, material);
     const DrawableTable *drawables = WORLD_TABLE(world, Drawable, drawable);
     MaterialPalette *palette = ARENA_PUSH(scratch, MaterialPalette, 1);
     u32 row_count = materials->table.count;
-    u8 *used = ARENA_PUSH(scratch, u8, row_count + 1); // the last: no material
+    u32 *used = ARENA_PUSH(scratch, u32, row_count + 1); // drawables; the last: no material
+    u32 uses[MATERIALS_CAP] = {0};
     MaterialMemo memo = {ENTITY_NONE, ROW_NONE};
     for (u32 i = 0; i < drawables->table.count; i++) {
         u32 row = material_row(materials, drawables->material[i], &memo);
-        used[row == ROW_NONE ? row_count : row] = 1;
+        used[row == ROW_NONE ? row_count : row]++;
     }
     palette->index_of_row = ARENA_PUSH(scratch, u16, row_count);
     u32 dropped = 0;
@@ -92,6 +113,7 @@ MaterialPalette *packet_collect_materials(const World *world, Arena *scratch) {
         }
         u32 index = palette->count++;
         palette->index_of_row[row] = (u16)index;
+        uses[index] = used[row];
         make_material(materials, row, &palette->records[index], &palette->bindings[index]);
         palette->brdf_mask |= 1u << (u32)palette->records[index].lobes[0];
         if (materials->diffuse[row] == DIFFUSE_OREN_NAYAR)
@@ -101,10 +123,12 @@ MaterialPalette *packet_collect_materials(const World *world, Arena *scratch) {
     if (used[row_count]) {
         palette->missing = MIN(palette->count, MATERIALS_CAP - 1);
         if (palette->count < MATERIALS_CAP) {
+            uses[palette->count] = used[row_count];
             palette->records[palette->count++] = missing_record;
             palette->brdf_mask |= 1u << BRDF_LAMBERT;
         }
     }
+    choose_common_lobes(palette, uses);
     static bool told;
     if (dropped > 0 && !told)
         LOG(RENDER_LIMIT, "%u materials beyond %u in use look like the last one", dropped,

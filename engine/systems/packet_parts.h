@@ -59,6 +59,7 @@ typedef struct MaterialPalette {
     MaterialRecord records[MATERIALS_CAP];
     PacketMaterial bindings[MATERIALS_CAP];
     u32 brdf_mask;
+    f32 common_lobes[4]; // FrameRecord.common_lobes
 } MaterialPalette;
 #define PALETTE_NONE UINT16_MAX
 MaterialPalette *packet_collect_materials(const World *world, Arena *scratch);

@@ -20,6 +20,7 @@
                   M(FrameRecord, sky_zenith) M(FrameRecord, sky_horizon)                           \
                       M(FrameRecord, attenuation) M(FrameRecord, shadow) M(FrameRecord, slices)    \
                           M(FrameRecord, vertex_lighting) M(FrameRecord, previous_view_projection) \
+                              M(FrameRecord, common_lobes) M(FrameRecord, coding)                  \
                               M(FrameRecord, counts) M(FrameRecord, counts2)                       \
                                   M(FrameRecord, counts3) M(FrameRecord, grid))                    \
     X(InstanceRecord, M(InstanceRecord, world) M(InstanceRecord, ids))                             \
