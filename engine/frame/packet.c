@@ -45,6 +45,18 @@ Packet *packet_allocate(Arena *arena, const PacketSizes *sizes) {
     return packet;
 }
 
+u32 packet_tree_levels(u32 light_count, u32 sizes[PACKET_TREE_LEVELS_CAP]) {
+    u32 levels = 0;
+    for (u32 count = light_count; count > 0 && (levels == 0 || count > 1); levels++)
+        sizes[levels] = count = (count - 1) / GRID_NODE_WIDTH + 1;
+    for (u32 i = 0; i < levels / 2; i++) {
+        u32 swap = sizes[i];
+        sizes[i] = sizes[levels - 1 - i];
+        sizes[levels - 1 - i] = swap;
+    }
+    return levels;
+}
+
 // ---- validation ----
 
 static bool floats_finite(const void *data, u64 count) {
@@ -108,7 +120,9 @@ static const char *check_frame(const Packet *packet) {
         grid[1] != (packet->height_px + side_px - 1) / side_px || grid[2] < 1 ||
         grid[2] > CLUSTER_SLICES_CAP)
         return "the light grid differs from the picture size";
-    bool may_be_empty = settings_lists_on_device(&packet->settings);
+    if (grid[2] > 1 && !settings_clustered(&packet->settings)) return "tiles have no slices";
+    bool may_be_empty =
+        settings_lists_on_device(&packet->settings) && packet->blend_draws.count == 0;
     if (packet->cells.count != grid[0] * grid[1] * grid[2] &&
         !(may_be_empty && packet->cells.count == 0))
         return "the light grid has another number of cells";
@@ -119,9 +133,6 @@ static const char *check_frame(const Packet *packet) {
         return "light counts differ from the light sections";
     if (frame->counts3[0] > frame->counts[0] || frame->counts3[1] > frame->counts[1])
         return "more lights with a highlight than lights";
-    if (frame->counts[3] != packet->grid_nodes.count || frame->counts3[3] != 0 ||
-        (frame->counts3[2] != 0 && frame->counts3[2] >= packet->grid_nodes.count))
-        return "the hierarchy over the lights has another size";
     if (packet->directionals.count > DIRECTIONALS_CAP ||
         frame->counts[2] != packet->directionals.count)
         return "directional light count out of range";
@@ -202,53 +213,159 @@ static const char *check_lights(const Packet *packet) {
     return NULL;
 }
 
-// One list: points, then spots, each part ascending.
-static bool list_is_good(const u32 *indices, u32 points, u32 spots, u32 point_count,
-                         u32 light_count) {
+typedef struct LightCounts {
+    u32 points, all;                     // spots are the rest
+    u32 point_highlights, spots_diffuse; // where the second classes begin, as light indices
+    u32 indices;                         // of all lists
+} LightCounts;
+
+// One list: points, then spots, each part ascending, and the second class as long as it says.
+static bool list_is_good(const u32 *indices, const u32 list[4], const LightCounts *c) {
     bool good = true;
-    for (u32 i = 0; i < points; i++)
-        good &= indices[i] < point_count && (i == 0 || indices[i] > indices[i - 1]);
+    u32 points = list[1], spots = list[2], diffuse = 0;
+    for (u32 i = 0; i < points; i++) {
+        good &= indices[i] < c->points && (i == 0 || indices[i] > indices[i - 1]);
+        diffuse += indices[i] >= c->point_highlights;
+    }
+    good &= (list[3] & 0xFFFF) == MIN(diffuse, 0xFFFF);
     indices += points;
-    for (u32 i = 0; i < spots; i++)
-        good &= indices[i] >= point_count && indices[i] < light_count &&
+    diffuse = 0;
+    for (u32 i = 0; i < spots; i++) {
+        good &= indices[i] >= c->points && indices[i] < c->all &&
                 (i == 0 || indices[i] > indices[i - 1]);
-    return good;
+        diffuse += indices[i] >= c->spots_diffuse;
+    }
+    return good && list[3] >> 16 == MIN(diffuse, 0xFFFF);
 }
 
 // The lists of the cells follow each other without holes, in cell order. The one exception is a
 // list of all lights at the very beginning, which any number of cells may share (light_grid.c).
 // So the time of this check is linear in the packet's size, whatever the cells say.
-static const char *check_cells(const Packet *packet) {
+static const char *check_cells(const Packet *packet, const LightCounts *c) {
     const CellRecord *cells = PACKET_DATA(packet, cells, CellRecord);
     const u32 *indices = PACKET_DATA(packet, light_indices, u32);
-    u32 point_count = packet->frame.counts[0], spot_count = packet->frame.counts[1];
-    u32 light_count = point_count + spot_count; // without the dummy
+    u32 points_diffuse = c->points - c->point_highlights, spots_diffuse = c->all - c->spots_diffuse;
+    const u32 all_lights[4] = {0, c->points, c->all - c->points,
+                               MIN(points_diffuse, 0xFFFF) | MIN(spots_diffuse, 0xFFFF) << 16};
     u64 cursor = 0;
     bool shared = false;
-    if (packet->cells.count > 0 && cells[0].list[0] == light_count && light_count > 0) {
-        if (packet->light_indices.count < light_count ||
-            !list_is_good(indices, point_count, spot_count, point_count, light_count))
+    if (packet->cells.count > 0 && cells[0].list[0] == c->all && c->all > 0) {
+        if (c->indices < c->all || !list_is_good(indices, all_lights, c))
             return "the shared light list is damaged";
         shared = true;
-        cursor = light_count;
+        cursor = c->all;
     }
     for (u32 i = 0; i < packet->cells.count; i++) {
-        u32 offset = cells[i].list[0], points = cells[i].list[1], spots = cells[i].list[2];
-        if ((cells[i].list[3] & 0xFFFF) > points || cells[i].list[3] >> 16 > spots)
-            return "cell has more diffuse lights than lights";
-        if (points > point_count || spots > spot_count)
+        const u32 *list = cells[i].list;
+        u32 points = list[1], spots = list[2];
+        if (points > c->points || spots > c->all - c->points)
             return "cell has more lights than there are";
-        bool all = points == point_count && spots == spot_count;
-        if (offset == 0 && all && shared) continue;
-        if (offset != cursor) return "cell's light list does not lie where it belongs";
-        if (cursor + points + spots > packet->light_indices.count)
-            return "cell's light list reaches outside";
-        if (!list_is_good(indices + offset, points, spots, point_count, light_count))
-            return "cell's light list is damaged";
-        if (offset == 0 && all) shared = true;
+        bool all = memcmp(list, all_lights, sizeof all_lights) == 0;
+        if (all && shared) continue;
+        if (list[0] != cursor) return "cell's light list does not lie where it belongs";
+        if (cursor + points + spots > c->indices) return "cell's light list reaches outside";
+        if (!list_is_good(indices + list[0], list, c)) return "cell's light list is damaged";
+        shared |= all;
         cursor += points + spots;
     }
-    return cursor == packet->light_indices.count ? NULL : "light lists do not add up";
+    return cursor == c->indices ? NULL : "light lists do not add up";
+}
+
+// One tree: the shape follows from the number of lights, so nothing can go in circles.
+static bool tree_is_good(const GridNode *nodes, u32 root, u32 place, u32 light_count) {
+    u32 sizes[PACKET_TREE_LEVELS_CAP], levels = packet_tree_levels(light_count, sizes);
+    bool good = true;
+    for (u32 level = 0, node = root; level < levels; level++) {
+        bool leaves = level + 1 == levels;
+        u32 child = leaves ? place : node + sizes[level];
+        u32 left = leaves ? light_count : sizes[level + 1];
+        for (u32 i = 0; i < sizes[level]; i++, node++) {
+            u32 count = MIN(left, GRID_NODE_WIDTH), first, bits;
+            memcpy(&first, &nodes[node].low[3], sizeof first);
+            memcpy(&bits, &nodes[node].high[3], sizeof bits);
+            good &= first == child && bits == (count | (leaves ? 0x80000000u : 0));
+            good &= floats_finite(nodes[node].low, 3) && floats_finite(nodes[node].high, 3);
+            child += count, left -= count;
+        }
+    }
+    return good;
+}
+
+// The hierarchy and its order, which lies behind the cells' lists.
+static const char *check_hierarchy(const Packet *packet, const LightCounts *c) {
+    const u32 *order = PACKET_DATA(packet, light_indices, u32) + c->indices;
+    const GridNode *nodes = PACKET_DATA(packet, grid_nodes, GridNode);
+    u32 sizes[PACKET_TREE_LEVELS_CAP], spots = c->all - c->points, root = 0, count = 0;
+    for (u32 i = 0, n = packet_tree_levels(c->points, sizes); i < n; i++) root += sizes[i];
+    for (u32 i = 0, n = packet_tree_levels(spots, sizes); i < n; i++) count += sizes[i];
+    if (packet->grid_nodes.count != root + count || c->all == 0 ||
+        packet->frame.counts3[2] != (spots ? root : 0))
+        return "the hierarchy over the lights has another size";
+    bool good = true;
+    for (u32 i = 0; i < c->all; i++)
+        good &= i < c->points ? order[i] < c->points : order[i] >= c->points && order[i] < c->all;
+    if (!good) return "the hierarchy's order names lights that are not there";
+    if (!tree_is_good(nodes, 0, 0, c->points) || !tree_is_good(nodes, root, c->points, spots))
+        return "the hierarchy over the lights is damaged";
+    return NULL;
+}
+
+static const char *check_lists(const Packet *packet) {
+    const FrameRecord *frame = &packet->frame;
+    LightCounts c = {.points = frame->counts[0],
+                     .all = frame->counts[0] + frame->counts[1],
+                     .point_highlights = frame->counts3[0],
+                     .spots_diffuse = frame->counts[0] + frame->counts3[1],
+                     .indices = packet->light_indices.count};
+    if (frame->counts[3] != packet->grid_nodes.count)
+        return "the hierarchy over the lights has another size";
+    if (packet->grid_nodes.count == 0) {
+        if (frame->counts3[2] != 0 || frame->counts3[3] != 0)
+            return "the frame record names a hierarchy that is not there";
+        return check_cells(packet, &c);
+    }
+    if (frame->counts3[3] > c.indices || c.indices - frame->counts3[3] != c.all)
+        return "the hierarchy's order does not lie where it belongs";
+    c.indices = frame->counts3[3];
+    const char *problem = check_cells(packet, &c);
+    return problem ? problem : check_hierarchy(packet, &c);
+}
+
+static const char *check_posts(const Packet *packet) {
+    const PacketPost *posts = PACKET_DATA(packet, posts, PacketPost);
+    if (packet->posts.count > PACKET_POSTS_CAP) return "too many steps in the post chain";
+    for (u32 i = 0; i < packet->posts.count; i++) {
+        if (posts[i].kind >= POST_KIND_COUNT) return "unknown step in the post chain";
+        if (!floats_finite(posts[i].values, COUNT_OF(posts[i].values)))
+            return "step of the post chain has a number that is not finite";
+        for (u32 k = 0; k < 4 && posts[i].kind == POST_HEAT; k++)
+            if (fabsf(posts[i].values[7 + k]) > PACKET_SIDE_MAX)
+                return "heat lies outside the picture";
+    }
+    return NULL;
+}
+
+// What debug pictures of the light manager show.
+static const char *check_manager(const Packet *packet) {
+    const PacketLightMark *marks = PACKET_DATA(packet, light_marks, PacketLightMark);
+    u32 light_count = packet->lights.count - 1; // without the dummy
+    for (u32 i = 0; i < packet->light_marks.count; i++) {
+        const PacketLightMark *mark = &marks[i];
+        if (!floats_finite(mark, offsetof(PacketLightMark, fate) / sizeof(f32)))
+            return "light mark has a number that is not finite";
+        if (mark->fate >= LIGHT_FATE_COUNT) return "light mark has an unknown fate";
+        if (mark->light != UINT32_MAX && mark->light >= light_count)
+            return "light mark names a light that is not there";
+    }
+    const PacketCounts *counts = &packet->counts;
+    u64 texels = (u64)counts->occluder_width * counts->occluder_height;
+    if (counts->occluder_width > PACKET_SIDE_MAX || counts->occluder_height > PACKET_SIDE_MAX)
+        return "occluders' picture size out of range";
+    if (packet->occluder_depths.count != 0 && packet->occluder_depths.count != texels)
+        return "occluders' picture differs from its size";
+    if (!floats_finite(PACKET_DATA(packet, occluder_depths, f32), packet->occluder_depths.count))
+        return "occluders' picture has a number that is not finite";
+    return floats_finite(&counts->merge_error, 1) ? NULL : "merge error is not finite";
 }
 
 static const char *check_texts(const Packet *packet) {
@@ -286,7 +403,9 @@ const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 tex
     if (!problem)
         problem = check_draws(packet, packet->emissive_draws, mesh_count, &emissive_budget);
     if (!problem) problem = check_lights(packet);
-    if (!problem) problem = check_cells(packet);
+    if (!problem) problem = check_lists(packet);
+    if (!problem) problem = check_posts(packet);
+    if (!problem) problem = check_manager(packet);
     if (!problem) problem = check_texts(packet);
     return problem;
 }

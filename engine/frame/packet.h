@@ -167,6 +167,11 @@ const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 tex
 
 #define PACKET_SIDE_MAX 16384 // px
 
+// Shape of the hierarchy over so many lights (grid_nodes): nodes of each level from the root down.
+// Returns how many levels; 0 for no lights.
+#define PACKET_TREE_LEVELS_CAP 12
+u32 packet_tree_levels(u32 light_count, u32 sizes[PACKET_TREE_LEVELS_CAP]);
+
 #ifdef __cplusplus
 }
 #endif

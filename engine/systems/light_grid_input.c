@@ -18,20 +18,6 @@ typedef struct InputJob {
     LightCones cones;
 } InputJob;
 
-// Smallest sphere around the part of a ball of radius `reach` that lies in a cone with its tip in
-// the centre: up to 45 degrees through tip and rim, beyond around the rim's circle, from 90 on the
-// whole ball. Returns how far along the axis its centre lies.
-static f32 cone_sphere(f32 reach, f32 cos_half, f32 sin_half, f32 *radius) {
-    if (cos_half > 0.70710678f) {
-        *radius = reach / (2.0f * cos_half);
-        return *radius;
-    }
-    *radius = reach * sin_half;
-    if (cos_half > 0.0f) return reach * cos_half;
-    *radius = reach;
-    return 0.0f;
-}
-
 static void job_input(void *context, u32 begin, u32 end, u32 thread_index) {
     (void)thread_index;
     const InputJob *job = context;
@@ -56,7 +42,7 @@ static void job_input(void *context, u32 begin, u32 end, u32 thread_index) {
             if (!(length > 0.5f && length < 2.0f)) cos_half = -1.0f, length = 1.0f;
             for (u32 a = 0; a < 3; a++) axis[a] /= length;
             f32 sin_half = sqrtf(MAX(1.0f - cos_half * cos_half, 0.0f));
-            along = cone_sphere(reach, cos_half, sin_half, &radius);
+            along = cone_bounding_sphere(reach, cos_half, sin_half, &radius);
             radius += radius * REACH_SLACK;
             const LightCones *c = &job->cones;
             c->tip_x[s] = at[0], c->tip_y[s] = at[1], c->tip_z[s] = at[2];

@@ -6,32 +6,34 @@
 // Everything is collected in scratch memory first, then the packet is laid out once, and the large
 // arrays (instances, light lists) are written right into it. The same world and desc give the same
 // bytes with any number of threads.
-#include "packet_parts.h"
+#include "packet_lists.h"
+#include "occlusion.h"
 #include "../base/clock.h"
 #include "../base/hash.h"
 #include <string.h>
 
 // ---- view ----
 
-static PacketView make_view(const PacketBuildDesc *desc) {
-    const TransformTable *transforms = WORLD_TABLE(desc->world, Transform, transform);
-    const CameraTable *cameras = WORLD_TABLE(desc->world, Camera, camera);
-    u32 place = table_row(&transforms->table, desc->camera);
-    u32 lens = table_row(&cameras->table, desc->camera);
-    Mat34 world = mat34_identity();
-    if (place != ROW_NONE) columns_get_mat34(&transforms->w00, place, world.m);
+PacketView packet_make_view(const World *world, Entity camera, u32 width_px, u32 height_px) {
+    const TransformTable *transforms = WORLD_TABLE(world, Transform, transform);
+    const CameraTable *cameras = WORLD_TABLE(world, Camera, camera);
+    u32 place = table_row(&transforms->table, camera);
+    u32 lens = table_row(&cameras->table, camera);
+    Mat34 matrix = mat34_identity();
+    if (place != ROW_NONE) columns_get_mat34(&transforms->w00, place, matrix.m);
     f32 fov_deg = 60.0f;
-    PacketView view = {.near = 0.1f, .height_px = (f32)desc->height_px};
+    PacketView view = {.near = 0.1f, .height_px = (f32)height_px};
     if (lens != ROW_NONE) {
         fov_deg = CLAMP(cameras->fov[lens], 1.0f, 170.0f);
         view.near = CLAMP(cameras->near[lens], 1e-4f, 1e3f);
     }
-    f32 fov_rad = DEG_TO_RAD(fov_deg), aspect = (f32)desc->width_px / (f32)desc->height_px;
+    f32 fov_rad = DEG_TO_RAD(fov_deg), aspect = (f32)width_px / (f32)height_px;
 
     // A camera below a scaled parent must not scale the world: only directions are taken.
-    view.position = mat34_translation(&world);
-    view.forward = vec3_normalize(vec3(-world.m[2], -world.m[6], -world.m[10]));
-    view.right = vec3_normalize(vec3_cross(view.forward, vec3(world.m[1], world.m[5], world.m[9])));
+    const f32 *m = matrix.m;
+    view.position = mat34_translation(&matrix);
+    view.forward = vec3_normalize(vec3(-m[2], -m[6], -m[10]));
+    view.right = vec3_normalize(vec3_cross(view.forward, vec3(m[1], m[5], m[9])));
     if (!(vec3_dot(view.forward, view.forward) > 0.5f && vec3_dot(view.right, view.right) > 0.5f))
         view.forward = vec3(0, 0, -1), view.right = vec3(1, 0, 0); // a flattened matrix
     view.up = vec3_cross(view.right, view.forward);
@@ -75,6 +77,7 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
     set_vec4(frame->sky_horizon, e->sky_horizon_r, e->sky_horizon_g, e->sky_horizon_b, time_s);
     set_vec4(frame->attenuation, e->attenuation_constant, e->attenuation_linear,
              e->attenuation_quadratic, 0);
+    frame->vertex_lighting[0] = lights->vertex_lighting;
     frame->counts[0] = lights->point_count;
     frame->counts[1] = lights->spot_count;
     frame->counts[2] = lights->directional_count;
@@ -157,16 +160,29 @@ static RowList cull_drawables(const World *world, const Frustum *frustum, Arena 
     return list;
 }
 
+// Takes those behind occluders out of the list; returns how many.
+static u32 hide_drawables(const World *world, const OcclusionBuffer *occlusion, RowList *list,
+                          Arena *scratch) {
+    const DrawableTable *d = WORLD_TABLE(world, Drawable, drawable);
+    u32 before = list->count;
+    list->count = occlusion_cull(occlusion, d->bounds_x, d->bounds_y, d->bounds_z,
+                                 d->bounds_radius, list->rows, list->count, scratch);
+    return before - list->count;
+}
+
 // ---- the packet ----
 
 typedef struct Parts {
     PacketView view;
+    OcclusionBuffer *occlusion; // NULL = there are no occluders, or they are switched off
+    u32 drawables_occluded;
     LightParts lights;
     FrameRecord frame;
-    LightGridPlan grid;
+    LightLists lists;
     MaterialPalette *palette;
     DrawLists draws, shadow;
     ShadowFit shadow_fit;
+    PostParts posts;
     u32 shadow_size_px, emissive_count, character_count;
 } Parts;
 
@@ -252,8 +268,24 @@ static void write_texts(Packet *packet, const PacketBuildDesc *desc) {
     }
 }
 
+static u32 occluder_texels(const PacketBuildDesc *desc, const OcclusionBuffer *buffer) {
+    bool shown = buffer && desc->settings.view == VIEW_OCCLUDERS;
+    return shown ? buffer->width[0] * buffer->height[0] : 0;
+}
+
+// Depth in metres, 0 = nothing.
+static void write_occluders(Packet *packet, const OcclusionBuffer *buffer) {
+    f32 *out = PACKET_WRITE(packet, occluder_depths, f32);
+    for (u32 i = 0; i < packet->occluder_depths.count; i++)
+        out[i] = buffer->low[0][i] > 1e-9f ? 1.0f / buffer->low[0][i] : 0.0f;
+    if (!buffer) return;
+    packet->counts.occluders = buffer->occluders;
+    packet->counts.occluder_width = buffer->width[0];
+    packet->counts.occluder_height = buffer->height[0];
+}
+
 static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
-                            const Environment *environment, Arena *out, Arena *scratch) {
+                            const Environment *environment, Arena *out) {
     const LightParts *lights = &parts->lights;
     u32 light_count = lights->point_count + lights->spot_count;
     PacketSizes sizes = {
@@ -269,9 +301,13 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
         .lights = light_count + 1,
         .spots = lights->spot_count,
         .directionals = lights->directional_count,
-        .cells = parts->grid.tile_count,
-        .light_indices = parts->grid.index_count,
+        .cells = parts->lists.cell_count,
+        .light_indices = parts->lists.index_count,
+        .grid_nodes = parts->lists.node_count,
         .gi_lights = lights->gi_count,
+        .light_marks = lights->mark_count,
+        .occluder_depths = occluder_texels(desc, parts->occlusion),
+        .posts = parts->posts.count,
         .texts = desc->text_count,
         .characters = parts->character_count,
     };
@@ -286,13 +322,9 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     packet->frame = parts->frame;
     memcpy(packet->frame.common_lobes, parts->palette->common_lobes,
            sizeof packet->frame.common_lobes);
-    packet->frame.coding[0] = coding_reach(WORLD_TABLE(desc->world, Drawable, drawable),
-                                           &parts->draws, &parts->view);
+    packet->frame.coding[0] =
+        coding_reach(WORLD_TABLE(desc->world, Drawable, drawable), &parts->draws, &parts->view);
     write_falloff(&packet->frame);
-    packet->frame.grid[0] = parts->grid.tiles_x;
-    packet->frame.grid[1] = parts->grid.tiles_y;
-    packet->frame.grid[2] = 1;
-    packet->frame.grid[3] = parts->grid.input.tile_px;
     packet->frame.counts2[0] = sizes.materials;
     packet->frame.counts2[1] = sizes.instances;
 
@@ -308,23 +340,31 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     COPY(spots, SpotRecord, lights->spots);
     COPY(directionals, DirectionalRecord, lights->directionals);
     COPY(gi_lights, LightRecord, lights->gi_lights);
+    COPY(light_marks, PacketLightMark, lights->marks);
+    COPY(posts, PacketPost, parts->posts.posts);
 #undef COPY
-    light_grid_fill(&parts->grid, PACKET_WRITE(packet, cells, CellRecord),
-                    PACKET_WRITE(packet, light_indices, u32), scratch);
     write_shadow(packet, parts, environment, desc->assets->stamp);
     write_texts(packet, desc);
     packet->counts = (PacketCounts){
         .lights_total = lights->total,
         .lights_visible = lights->visible,
-        .lights_shaded = parts->grid.lights_listed,
+        .lights_occluded = lights->occluded,
+        .lights_merged_pairs = lights->merged_pairs,
+        .lights_merged = lights->merged,
+        .lights_dropped = lights->dropped,
+        .lights_over_budget = lights->over_budget,
+        .lights_fading = lights->fading,
+        .lights_near = lights->near,
+        .lights_between = lights->between,
+        .lights_far = lights->far,
+        .merge_error = lights->merge_error,
+        .drawables_occluded = parts->drawables_occluded,
         .drawables_total = WORLD_TABLE(desc->world, Drawable, drawable)->table.count,
         .drawables_visible = parts->draws.row_count,
         .shadow_casters = parts->shadow.row_count,
         .triangles = parts->draws.triangles,
-        .cell_count = parts->grid.tile_count,
-        .cell_light_max = parts->grid.longest,
-        .light_index_count = parts->grid.index_count,
     };
+    write_occluders(packet, parts->occlusion);
     return packet;
 }
 
@@ -344,23 +384,31 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
     f64 clock_ms = clock_now_ms();
     PacketBuildTimes laps = {0};
     Environment environment = environment_read(desc.world);
-    Parts parts = {.view = make_view(&desc)};
+    Parts parts = {
+        .view = packet_make_view(desc.world, desc.camera, desc.width_px, desc.height_px)};
     for (u32 i = 0; i < desc.text_count; i++)
         parts.character_count += (u32)strlen(desc.texts[i].text);
 
     Frustum everywhere = {.count = 0};
+    if (desc.settings.occlusion) {
+        const OccluderPolygons *polygons =
+            desc.light_manager ? light_manager_polygons(desc.light_manager) : NULL;
+        parts.occlusion =
+            occlusion_draw(desc.world, desc.assets, polygons, &parts.view, scratch);
+    }
+    laps.occluders_ms = lap_ms(&clock_ms);
     RowList visible = cull_drawables(
         desc.world, desc.settings.mesh_culling ? &parts.view.frustum : &everywhere, scratch);
-    laps.cull_ms = lap_ms(&clock_ms);
+    if (desc.settings.mesh_culling)
+        parts.drawables_occluded =
+            hide_drawables(desc.world, parts.occlusion, &visible, scratch);
+    laps.cull_ms = laps.occluders_ms + lap_ms(&clock_ms);
 
-    parts.lights = packet_collect_lights(&desc, &parts.view, scratch);
+    parts.lights = packet_collect_lights(&desc, &parts.view, parts.occlusion, scratch);
     laps.lights_ms = lap_ms(&clock_ms);
+    memcpy(laps.light_stage_ms, parts.lights.stage_ms, sizeof laps.light_stage_ms);
     write_frame(&parts.frame, &desc, &parts.view, &parts.lights, &environment);
-    LightGridInput grid_input = light_grid_input(&parts.frame, parts.lights.lights,
-                                                 parts.lights.spots, &desc.settings, scratch);
-    parts.grid = light_grid_plan(&grid_input, scratch);
-    laps.grid_ms = lap_ms(&clock_ms);
-
+    parts.posts = packet_collect_posts(&desc, &parts.view, scratch);
     parts.palette = packet_collect_materials(desc.world, scratch);
     parts.draws = packet_collect_draws(&desc, &parts.view, parts.palette, visible.rows,
                                        visible.count, NULL, scratch);
@@ -377,8 +425,14 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
         shadow_fit_casters(&parts.shadow_fit, WORLD_TABLE(desc.world, Drawable, drawable),
                            parts.shadow.rows, parts.shadow.row_count);
     }
-    Packet *packet = write_packet(&desc, &parts, &environment, out, scratch);
     laps.pack_ms = lap_ms(&clock_ms);
+    parts.lists = light_lists_plan(&parts.frame, parts.lights.lights, parts.lights.spots,
+                                   &desc.settings, parts.draws.counts[ALPHA_BLEND] > 0, scratch);
+    laps.grid_ms = lap_ms(&clock_ms);
+    Packet *packet = write_packet(&desc, &parts, &environment, out);
+    laps.pack_ms += lap_ms(&clock_ms);
+    light_lists_write(&parts.lists, packet);
+    laps.grid_ms += lap_ms(&clock_ms);
     if (times) *times = laps;
     arena_rewind(scratch, mark);
     return packet;

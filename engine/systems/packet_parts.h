@@ -3,11 +3,11 @@
 //   packet_lights.c  the light manager: lights of the view, GI lights, directional lights
 //   packet_shadow.c  the shadow map's matrix
 //   packet_draws.c   material palette, drawcalls, instances
+//   packet_post.c    the post chain
 // All arrays lie in the scratch arena until the packet's size is known.
 #ifndef LUZ_PACKET_PARTS_H
 #define LUZ_PACKET_PARTS_H
 #include "environment.h"
-#include "light_grid.h"
 #include "systems.h"
 
 typedef struct PacketView {
@@ -18,10 +18,22 @@ typedef struct PacketView {
     Frustum frustum;
 } PacketView;
 
+// As the camera entity sees; ENTITY_NONE or one without a transform: from the origin. Pixels count
+// for aspect and height_px only.
+PacketView packet_make_view(const World *world, Entity camera, u32 width_px, u32 height_px);
+
 // ---- packet_lights.c ----
+
+typedef struct OcclusionBuffer OcclusionBuffer; // occlusion.h
 
 typedef struct LightParts {
     u32 total, visible; // local lights: of the level, of the view
+    u32 occluded, merged, merged_pairs, dropped, over_budget, fading; // as in PacketCounts
+    u32 near, between, far;
+    f32 merge_error, vertex_lighting; // the latter: FrameRecord
+    PacketLightMark *marks; // only if the view asks
+    u32 mark_count;
+    f32 stage_ms[LIGHT_STAGE_COUNT];
     u32 point_count, spot_count;
     LightRecord *lights; // [point_count + spot_count + 1]: points, spots, the dummy
     SpotRecord *spots;   // [spot_count]
@@ -33,8 +45,9 @@ typedef struct LightParts {
     bool casts_shadow;     // directional 0 wants a shadow map
     Vec3 shadow_direction; // unit, the way directional 0 shines
 } LightParts;
+// occlusion NULL = nothing hides.
 LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *view,
-                                 Arena *scratch);
+                                 const OcclusionBuffer *occlusion, Arena *scratch);
 
 // ---- packet_shadow.c ----
 
@@ -49,6 +62,15 @@ typedef struct ShadowFit {
 ShadowFit shadow_fit_view(const PacketView *view, Vec3 direction, f32 distance_m, u32 size_px);
 void shadow_fit_casters(ShadowFit *fit, const DrawableTable *drawables, const u32 *rows, u32 count);
 Mat4 shadow_fit_matrix(const ShadowFit *fit);
+
+// ---- packet_post.c ----
+
+typedef struct PostParts {
+    PacketPost *posts; // in the order in which they run
+    u32 count;
+} PostParts;
+PostParts packet_collect_posts(const PacketBuildDesc *desc, const PacketView *view,
+                               Arena *scratch);
 
 // ---- packet_draws.c ----
 

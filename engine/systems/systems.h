@@ -76,6 +76,13 @@ typedef struct LightCones {
     f32 *tip_x, *tip_y, *tip_z, *axis_x, *axis_y, *axis_z; // axis: unit
     f32 *cos_half, *sin_half, *reach;
 } LightCones;
+// How depth is sliced into clusters: slice = clamp(floor(log2(view depth) * scale + offset), 0,
+// count - 1). FrameRecord.slices is {scale, offset, end, factor}.
+typedef struct ClusterSlices {
+    u32 count;         // 0 = no clusters: a grid of tiles
+    f32 scale, offset;
+    f32 end, factor;   // view depth in m where slice 0 ends; ends of slices grow by the factor
+} ClusterSlices;
 typedef struct LightGridInput {
     const f32 *x, *y, *z, *radius; // view space; [count]; a spot's is its cone's smallest sphere
     u32 count, point_count;        // lights >= point_count are spots
@@ -83,6 +90,8 @@ typedef struct LightGridInput {
     f32 near, scale_x, scale_y;    // projection scales
     u32 highlight_points, highlight_spots; // the first so many points and spots have a highlight
     LightCones cones;              // all NULL = spots are taken for their spheres
+    GridMethod method;             // of tiles: rectangle, else the tile's frustum
+    ClusterSlices slices;
 } LightGridInput;
 // From a packet's records (light_grid_input.c): counts, camera and lens from `frame`, tile size
 // from the settings. Memory from the arena.
@@ -90,13 +99,19 @@ LightGridInput light_grid_input(const FrameRecord *frame, const LightRecord *lig
                                 const SpotRecord *spots, const RenderSettings *settings,
                                 Arena *arena);
 typedef struct LightGrid {
-    CellRecord *tiles; // [tiles_x * tiles_y], rows from the upper left
-    u32 *indices;      // ascending within a tile
-    u32 tiles_x, tiles_y, index_count;
-    u32 longest;       // lights in the fullest tile
+    CellRecord *cells; // [tiles_x * tiles_y * slices], tiles row by row from the upper left
+    u32 *indices;      // ascending within a cell
+    u32 tiles_x, tiles_y, slices, cell_count, index_count;
+    u32 longest;       // lights in the fullest cell
+    u32 fallbacks;     // cells that use the list of all lights because memory ran out
 } LightGrid;
 // Count, prefix sum, fill (stable). Memory from the arena.
 LightGrid light_grid_build(const LightGridInput *input, Arena *arena);
+// Slices for these lights (light_clusters.c): near-cubic clusters (specification of direct
+// lighting, 6.3) from the eye to the farthest light, fewer and longer ones if there would be more
+// than CLUSTER_SLICES_CAP slices or cells_cap cells.
+#define CLUSTER_CELLS_CAP (1u << 17) // 2 MiB of records, made and uploaded every frame
+ClusterSlices light_cluster_slices(const LightGridInput *input, u32 cells_cap);
 
 // --- Packet (packet_build.c) ---
 
@@ -133,6 +148,12 @@ typedef struct PacketBuildTimes {
 // The packet lies in `out`; scratch is used and given back. times may be NULL.
 const Packet *packet_build(const PacketBuildDesc *desc, Arena *out, Arena *scratch,
                            PacketBuildTimes *times);
+// The same frame to be drawn in another way (packet_lists.c): a copy with the path and the other
+// settings of drawing taken over and the light lists made anew for them. Settings that shaped the
+// rest of the packet when it was built (scale, culling, detail, shadows, the light manager's,
+// exposure, gain, limit) keep its values. The packet must be valid; the copy lies in `out`.
+const Packet *packet_relist(const Packet *packet, const RenderSettings *settings, Arena *out,
+                            Arena *scratch);
 
 // --- Collision (collision.c) ---
 

@@ -139,7 +139,7 @@ TEST(systems_light_grid, lists_equal_asking_every_tile) {
         assert_int_equal(grid.tiles_y, (sizes[round][1] + 15) / 16);
         u32 cursor = 0, longest = 0;
         for (u32 t = 0; t < grid.tiles_x * grid.tiles_y; t++) {
-            const u32 *list = grid.tiles[t].list;
+            const u32 *list = grid.cells[t].list;
             assert_int_equal(list[0], cursor);
             cursor += list[1] + list[2];
             longest = MAX(longest, list[1] + list[2]);
@@ -199,7 +199,7 @@ TEST(systems_light_grid, too_long_lists_share_one) {
     assert_true(grid.index_count <= 1u << 24);
     u32 shared = 0, own = 0;
     for (u32 t = 0; t < grid.tiles_x * grid.tiles_y; t++) {
-        const u32 *list = grid.tiles[t].list;
+        const u32 *list = grid.cells[t].list;
         bool all = list[1] == c.input.point_count && list[1] + list[2] == COUNT;
         if (all && list[0] == 0)
             shared++;
