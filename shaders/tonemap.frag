@@ -5,6 +5,7 @@
 #include "common.glsl"
 
 layout(set = 0, binding = BINDING_HDR) uniform sampler2D hdr;
+layout(push_constant) uniform Push { float exponent; } gamma; // SPEC_POST 1: instead of sRGB
 layout(location = 0) out vec4 out_color;
 
 void main() {
@@ -12,5 +13,6 @@ void main() {
     c = TONEMAP != 0u ? c / (1.0 + c) : clamp(c, 0.0, 1.0);
     // Interleaved gradient noise (Jimenez 2014).
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    out_color = vec4(srgb_encode_fast(c) + (noise - 0.5) / 255.0, 1.0);
+    vec3 encoded = POST != 0u ? pow(c, vec3(gamma.exponent)) : srgb_encode_fast(c);
+    out_color = vec4(encoded + (noise - 0.5) / 255.0, 1.0);
 }

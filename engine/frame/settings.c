@@ -10,10 +10,23 @@
 #include <string.h>
 
 const SettingDesc render_setting_descs[] = {
-#define S(type, name, initial, min, max, words, help)                                              \
-    {#name, words, help, SETTING_##type, initial, min, max, offsetof(RenderSettings, name)},
+#define S(type, name, group, initial, min, max, words, help)                                       \
+    {#name,                                                                                        \
+     words,                                                                                        \
+     help,                                                                                         \
+     SETTING_##type,                                                                               \
+     SETTING_GROUP_##group,                                                                        \
+     initial,                                                                                      \
+     min,                                                                                          \
+     max,                                                                                          \
+     offsetof(RenderSettings, name)},
     RENDER_SETTINGS(S)
 #undef S
+};
+const char *const setting_group_titles[SETTING_GROUP_COUNT] = {
+#define X(id, title) title,
+    SETTING_GROUPS(X)
+#undef X
 };
 const u32 render_setting_count = COUNT_OF(render_setting_descs);
 
@@ -206,6 +219,82 @@ bool settings_set(RenderSettings *settings, const char *key_equals_value) {
     return known;
 }
 
+bool settings_set_list(RenderSettings *settings, const char *list) {
+    RenderSettings changed = *settings;
+    while (true) {
+        u32 length = (u32)strcspn(list, ",");
+        char item[NAME_CAP * 2];
+        if (length >= sizeof item - 5) {
+            LOG(RENDER_SETTING, "'%.64s' is too long for a setting", list);
+            return false;
+        }
+        bool bare = !memchr(list, '=', length);
+        snprintf(item, sizeof item, "%s%.*s", bare ? "path=" : "", (int)length, list);
+        if (!settings_set(&changed, item)) return false;
+        if (!list[length]) break;
+        list += length + 1;
+    }
+    *settings = changed;
+    return true;
+}
+
+// ---- effect ----
+
+// States of the other settings that give a setting something to do.
+enum {
+    WHEN_DEFERRED = 1 << 0,
+    WHEN_FORWARD = 1 << 1,
+    WHEN_MANAGED = 1 << 2,
+    WHEN_TILED = 1 << 3,
+    WHEN_CLUSTERED = 1 << 4,
+    WHEN_CLUSTERED_ON_GPU = 1 << 5,
+    WHEN_TILED_DEFERRED = 1 << 6,
+    WHEN_VOLUMES = 1 << 7,
+    WHEN_PACKED = 1 << 8,
+};
+
+bool setting_has_effect(const RenderSettings *s, const SettingDesc *desc) {
+#define ROW(name, when)                                                                            \
+    { (u32) offsetof(RenderSettings, name), when }
+    // Those that are not here always have.
+    static const u32 rows[][2] = {
+        ROW(layout, WHEN_DEFERRED),
+        ROW(msaa, WHEN_FORWARD),
+        ROW(vertex_lighting, WHEN_FORWARD),
+        ROW(light_culling, WHEN_MANAGED),
+        ROW(occlusion, WHEN_MANAGED),
+        ROW(merge, WHEN_MANAGED),
+        ROW(drop, WHEN_MANAGED),
+        ROW(light_lod, WHEN_MANAGED),
+        ROW(budget, WHEN_MANAGED),
+        ROW(grid, WHEN_TILED),
+        ROW(tile_depth, WHEN_TILED),
+        ROW(tile_px, WHEN_TILED | WHEN_CLUSTERED),
+        ROW(subgroup_cull, WHEN_TILED_DEFERRED),
+        ROW(clusters, WHEN_CLUSTERED),
+        ROW(cluster_normals, WHEN_CLUSTERED_ON_GPU),
+        ROW(light_scissor, WHEN_VOLUMES),
+        ROW(light_volume, WHEN_VOLUMES),
+        ROW(light_branch, WHEN_VOLUMES),
+        ROW(normal_lookup, WHEN_PACKED),
+    };
+#undef ROW
+    bool deferred = s->path == PATH_DEFERRED || s->path == PATH_DEFERRED_VOLUMES ||
+                    s->path == PATH_TILED_DEFERRED || s->path == PATH_CLUSTERED_DEFERRED;
+    bool packed = s->layout == LAYOUT_PACKED || s->layout == LAYOUT_PACKED24;
+    u32 state = deferred ? WHEN_DEFERRED : WHEN_FORWARD;
+    if (s->manager) state |= WHEN_MANAGED;
+    if (settings_tiled(s)) state |= WHEN_TILED;
+    if (settings_clustered(s)) state |= WHEN_CLUSTERED;
+    if (settings_clustered(s) && s->clusters == CLUSTERS_GPU) state |= WHEN_CLUSTERED_ON_GPU;
+    if (s->path == PATH_TILED_DEFERRED) state |= WHEN_TILED_DEFERRED;
+    if (s->path == PATH_DEFERRED_VOLUMES) state |= WHEN_VOLUMES;
+    if (deferred && packed) state |= WHEN_PACKED;
+    for (u32 i = 0; i < COUNT_OF(rows); i++)
+        if (rows[i][0] == desc->offset) return (state & rows[i][1]) != 0;
+    return true;
+}
+
 const char *settings_word(const char *name, u32 value, char *out, u64 out_cap) {
     if (out_cap == 0) return "";
     out[0] = 0;
@@ -217,5 +306,16 @@ const char *settings_word(const char *name, u32 value, char *out, u64 out_cap) {
         for (u32 index = 0; (length = next_word(&cursor, &word)) > 0; index++)
             if (index == value) snprintf(out, out_cap, "%.*s", (int)length, word);
     }
+    return out;
+}
+
+const char *setting_text(const RenderSettings *settings, const SettingDesc *desc, char *out,
+                         u64 out_cap) {
+    f64 value = setting_read(settings, desc);
+    if (desc->type == SETTING_ENUM) return settings_word(desc->name, (u32)value, out, out_cap);
+    if (desc->type == SETTING_BOOL)
+        snprintf(out, out_cap, "%s", value != 0.0 ? "on" : "off");
+    else
+        snprintf(out, out_cap, "%.6g", value);
     return out;
 }

@@ -56,18 +56,19 @@ typedef enum DebugView {
     VIEW_CELL_LIGHTS,   // heat map of the lengths of the tiles' or clusters' lists
     VIEW_TILE_DEPTH,    // nearest and farthest of each tile
     VIEW_CLUSTERS,      // a colour each
-    VIEW_OVERDRAW,      // how often each pixel is drawn
+    VIEW_OVERDRAW,      // how often each pixel is drawn: fragments that pass the depth test
     VIEW_LIGHT_RECTS,   // over the final picture: screen bounds of lights
     VIEW_LIGHT_VOLUMES, // spheres and cones
     VIEW_LIGHT_STATES,  // kept, merged, dropped, by colour; why
     VIEW_LIGHT_LODS,    // near, between, far
     VIEW_OCCLUDERS,     // the depth buffer that lights are tested against
+    VIEW_LAYERS,        // as overdraw, without the depth test: all that lies behind a pixel
     VIEW_COUNT
 } DebugView;
 #define VIEW_WORDS                                                                                 \
     "final albedo normal depth material position emissive specular motion gbuffer_0 gbuffer_1 "    \
     "gbuffer_2 gbuffer_3 gbuffer_4 cell_lights tile_depth clusters overdraw light_rects "          \
-    "light_volumes light_states light_lods occluders"
+    "light_volumes light_states light_lods occluders layers"
 
 typedef enum SpecularPower { SPECULAR_FAST, SPECULAR_EXACT, SPECULAR_COUNT } SpecularPower;
 // Who decides which lights touch a tile, and how (specification of direct lighting, 6.2).
@@ -93,55 +94,81 @@ typedef enum VolumeFaces {
 typedef enum Palette { PALETTE_BUFFER, PALETTE_TEXTURE, PALETTE_COUNT } Palette;
 typedef enum Msaa { MSAA_1, MSAA_4, MSAA_COUNT } Msaa;
 
-// S(type, name, default, min, max, words, help): type F32 | BOOL | ENUM | U32
+// What belongs together, for lists and the panel: X(id, title).
+#define SETTING_GROUPS(X)                                                                          \
+    X(PICTURE, "picture")                                                                          \
+    X(MANAGER, "light manager")                                                                    \
+    X(GRID, "light lists")                                                                         \
+    X(VOLUMES, "deferred volumes")                                                                 \
+    X(LOOKUPS, "look-ups")                                                                         \
+    X(POST, "post chain")
+typedef enum SettingGroup {
+#define X(id, title) SETTING_GROUP_##id,
+    SETTING_GROUPS(X)
+#undef X
+        SETTING_GROUP_COUNT
+} SettingGroup;
+extern const char *const setting_group_titles[SETTING_GROUP_COUNT];
+
+// S(type, name, group, default, min, max, words, help): type F32 | BOOL | ENUM | U32
 #define RENDER_SETTINGS(S)                                                                         \
-    S(ENUM, path, PATH_TILED_DEFERRED, 0, PATH_COUNT - 1, PATH_WORDS, "how lit pixels are made")   \
-    S(ENUM, layout, LAYOUT_LEAN, 0, LAYOUT_COUNT - 1, LAYOUT_WORDS, "what the G-buffer holds")     \
-    S(ENUM, view, VIEW_FINAL, 0, VIEW_COUNT - 1, VIEW_WORDS, "picture shown")                      \
-    S(F32, scale, 1.0f, 0.25f, 1.0f, "", "internal resolution / window resolution")                \
-    S(F32, target_ms, 0.0f, 0.0f, 1000.0f, "",                                                     \
+    S(ENUM, path, PICTURE, PATH_TILED_DEFERRED, 0, PATH_COUNT - 1, PATH_WORDS,                     \
+      "how lit pixels are made")                                                                   \
+    S(ENUM, layout, PICTURE, LAYOUT_LEAN, 0, LAYOUT_COUNT - 1, LAYOUT_WORDS,                       \
+      "what the G-buffer holds")                                                                   \
+    S(ENUM, view, PICTURE, VIEW_FINAL, 0, VIEW_COUNT - 1, VIEW_WORDS, "picture shown")             \
+    S(F32, scale, PICTURE, 1.0f, 0.25f, 1.0f, "", "internal resolution / window resolution")       \
+    S(F32, target_ms, PICTURE, 0.0f, 0.0f, 1000.0f, "",                                            \
       "frame time that a controller holds by changing scale; 0 = off (window only)")               \
-    S(BOOL, shadows, 1, 0, 1, "", "shadow map of the first directional light that casts")          \
-    S(BOOL, mesh_culling, 1, 0, 1, "", "drawables outside the view are left out")                  \
-    S(F32, lod_error_px, 0.7f, 0.0f, 16.0f, "",                                                    \
+    S(BOOL, shadows, PICTURE, 1, 0, 1, "", "shadow map of the first directional light that casts") \
+    S(BOOL, mesh_culling, PICTURE, 1, 0, 1, "", "drawables outside the view are left out")         \
+    S(F32, lod_error_px, PICTURE, 0.7f, 0.0f, 16.0f, "",                                           \
       "how far a simpler mesh may lie from the full one on the screen; 0 = always full detail")    \
-    S(BOOL, manager, 1, 0, 1, "", "light manager; off = every light of the level is shaded")       \
-    S(BOOL, light_culling, 1, 0, 1, "", "manager: lights outside the view are left out")           \
-    S(BOOL, occlusion, 1, 0, 1, "",                                                                \
+    S(BOOL, manager, MANAGER, 1, 0, 1, "",                                                         \
+      "light manager; off = every light of the level is shaded")                                   \
+    S(BOOL, light_culling, MANAGER, 1, 0, 1, "", "manager: lights outside the view are left out")  \
+    S(BOOL, occlusion, MANAGER, 1, 0, 1, "",                                                       \
       "manager: lights (and drawables) behind occluders are left out")                             \
-    S(BOOL, merge, 1, 0, 1, "", "manager: far lights that are close together become one")          \
-    S(BOOL, drop, 1, 0, 1, "", "manager: lights that are too small or too faint fade out")         \
-    S(BOOL, light_lod, 1, 0, 1, "", "manager: far lights lose their highlights")                   \
-    S(U32, budget, 0, 0, 4096, "",                                                                 \
+    S(BOOL, merge, MANAGER, 1, 0, 1, "", "manager: far lights that are close together become one") \
+    S(BOOL, drop, MANAGER, 1, 0, 1, "",                                                            \
+      "manager: lights that are too small or too faint fade out")                                  \
+    S(BOOL, light_lod, MANAGER, 1, 0, 1, "", "manager: far lights lose their highlights")          \
+    S(U32, budget, MANAGER, 0, 0, 4096, "",                                                        \
       "manager: lights that a region of 64 px may have; 0 = what the level says")                  \
-    S(BOOL, vertex_lighting, 1, 0, 1, "",                                                          \
+    S(BOOL, vertex_lighting, MANAGER, 1, 0, 1, "",                                                 \
       "forward paths: far surfaces are lit per vertex, if the level says from where")              \
-    S(ENUM, grid, GRID_RECT, 0, GRID_METHOD_COUNT - 1, "rect frustum gpu",                         \
+    S(ENUM, grid, GRID, GRID_RECT, 0, GRID_METHOD_COUNT - 1, "rect frustum gpu",                   \
       "tiles: a light's screen rectangle, the tile's frustum, or the frustum on the GPU")          \
-    S(ENUM, tile_px, TILE_16, 0, TILE_SIZE_COUNT - 1, "8 16 32 64", "side of a tile or cluster")   \
-    S(ENUM, tile_depth, TILE_DEPTH_OFF, 0, TILE_DEPTH_COUNT - 1, "off minmax mask",                \
+    S(ENUM, tile_px, GRID, TILE_16, 0, TILE_SIZE_COUNT - 1, "8 16 32 64",                          \
+      "side of a tile or cluster")                                                                 \
+    S(ENUM, tile_depth, GRID, TILE_DEPTH_OFF, 0, TILE_DEPTH_COUNT - 1, "off minmax mask",          \
       "tiles: lists are narrowed by what depths are seen: their range, or 32 slices of it")        \
-    S(BOOL, subgroup_cull, 1, 0, 1, "", "tiled: each subgroup culls its tile's list by its box")   \
-    S(ENUM, clusters, CLUSTERS_CPU, 0, CLUSTER_BUILD_COUNT - 1, "cpu gpu",                         \
+    S(BOOL, subgroup_cull, GRID, 1, 0, 1, "",                                                      \
+      "tiled: each subgroup culls its tile's list by its box")                                     \
+    S(ENUM, clusters, GRID, CLUSTERS_CPU, 0, CLUSTER_BUILD_COUNT - 1, "cpu gpu",                   \
       "clusters: all on the CPU, or those that are seen on the GPU")                               \
-    S(BOOL, cluster_normals, 0, 0, 1, "",                                                          \
+    S(BOOL, cluster_normals, GRID, 0, 0, 1, "",                                                    \
       "gpu clusters: told apart by the normal's direction too")                                    \
-    S(BOOL, light_scissor, 1, 0, 1, "", "deferred_volumes: scissor of the light's exact bounds")   \
-    S(ENUM, light_volume, VOLUME_AUTO, 0, VOLUME_COUNT - 1, "quad back front auto stencil",        \
-      "deferred_volumes: what is drawn for a light")                                               \
-    S(BOOL, light_branch, 0, 0, 1, "", "deferred_volumes: the shader stops outside the light")     \
-    S(ENUM, msaa, MSAA_1, 0, MSAA_COUNT - 1, "1 4", "forward paths: samples a pixel")              \
-    S(BOOL, attenuation_lookup, 0, 0, 1, "", "falloff from a texture instead of arithmetic")       \
-    S(BOOL, normal_lookup, 0, 0, 1, "", "packed layouts: a normal's z from a texture")             \
-    S(ENUM, palette, PALETTE_BUFFER, 0, PALETTE_COUNT - 1, "buffer texture",                       \
+    S(BOOL, light_scissor, VOLUMES, 1, 0, 1, "",                                                   \
+      "deferred_volumes: scissor of the light's exact bounds")                                     \
+    S(ENUM, light_volume, VOLUMES, VOLUME_AUTO, 0, VOLUME_COUNT - 1,                               \
+      "quad back front auto stencil", "deferred_volumes: what is drawn for a light")               \
+    S(BOOL, light_branch, VOLUMES, 0, 0, 1, "",                                                    \
+      "deferred_volumes: the shader stops outside the light")                                      \
+    S(ENUM, msaa, PICTURE, MSAA_1, 0, MSAA_COUNT - 1, "1 4", "forward paths: samples a pixel")     \
+    S(BOOL, attenuation_lookup, LOOKUPS, 0, 0, 1, "",                                              \
+      "falloff from a texture instead of arithmetic")                                              \
+    S(BOOL, normal_lookup, LOOKUPS, 0, 0, 1, "", "packed layouts: a normal's z from a texture")    \
+    S(ENUM, palette, LOOKUPS, PALETTE_BUFFER, 0, PALETTE_COUNT - 1, "buffer texture",              \
       "where shaders read materials")                                                              \
-    S(ENUM, specular, SPECULAR_FAST, 0, SPECULAR_COUNT - 1, "fast exact",                          \
+    S(ENUM, specular, PICTURE, SPECULAR_FAST, 0, SPECULAR_COUNT - 1, "fast exact",                 \
       "power of highlights: exp2 of a Pade logarithm, or pow() itself")                            \
-    S(BOOL, post, 1, 0, 1, "", "the level's post chain; off = tone mapping and gamma alone")       \
-    S(BOOL, tonemap, 1, 0, 1, "", "Reinhard; off = clamp")                                         \
-    S(F32, exposure, 1.0f, 0.0f, 1000.0f, "", "factor on the level's exposure")                    \
-    S(F32, light_gain, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")           \
-    S(U32, light_limit, 0, 0, 1000000, "", "only the first N point and spot lights; 0 = all")
+    S(BOOL, post, POST, 1, 0, 1, "", "the level's post chain; off = tone mapping and gamma alone") \
+    S(BOOL, tonemap, POST, 1, 0, 1, "", "Reinhard; off = clamp")                                   \
+    S(F32, exposure, PICTURE, 1.0f, 0.0f, 1000.0f, "", "factor on the level's exposure")           \
+    S(F32, light_gain, PICTURE, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")  \
+    S(U32, light_limit, PICTURE, 0, 0, 1000000, "",                                                \
+      "only the first N point and spot lights; 0 = all")
 
 #define SETTING_FIELD_F32(name)  f32 name;
 #define SETTING_FIELD_BOOL(name) u32 name;
@@ -157,6 +184,7 @@ typedef enum SettingType { SETTING_F32, SETTING_BOOL, SETTING_ENUM, SETTING_U32 
 typedef struct SettingDesc {
     const char *name, *words, *help; // words: of an ENUM, separated by blanks
     SettingType type;
+    SettingGroup group;
     f64 initial, min, max;
     u32 offset; // of the 4-byte value in RenderSettings
 } SettingDesc;
@@ -184,8 +212,16 @@ static inline bool settings_lists_on_device(const RenderSettings *settings) {
 // "key=value" (ENUM by word, BOOL true/false/on/off/1/0). On a mistake: LOG RENDER_SETTING with a
 // suggestion, false, settings unchanged.
 bool settings_set(RenderSettings *settings, const char *key_equals_value);
+// Several, separated by commas; a word alone is a path: "deferred,layout=packed". On a mistake:
+// LOG RENDER_SETTING, false, settings unchanged.
+bool settings_set_list(RenderSettings *settings, const char *list);
+// Does the setting change what is drawn, or how, with the others as they are (say, the path)?
+bool setting_has_effect(const RenderSettings *settings, const SettingDesc *desc);
 // Brings every value into its range (what comes from a file is not trusted).
 void settings_clamp(RenderSettings *settings);
+// A setting's value as settings_set reads it.
+const char *setting_text(const RenderSettings *settings, const SettingDesc *desc, char *out,
+                         u64 out_cap);
 // The word of an ENUM setting's value, e.g. settings_word("path", 2) = "tiled_deferred".
 const char *settings_word(const char *name, u32 value, char *out, u64 out_cap);
 

@@ -9,6 +9,8 @@
 #pragma GCC diagnostic ignored "-Wconversion"
 #include <stb/stb_easy_font.h>
 #pragma GCC diagnostic pop
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #define TEXT_QUADS_MAX   8192 // more is cut off; a screen of text has about 5,000
@@ -19,8 +21,8 @@ typedef struct EasyFontVertex {
     u8 color[4];
 } EasyFontVertex;
 
-static bool buffer_ensure(Renderer *renderer, GpuBuffer *buffer, const char *label, u64 size,
-                          bool vertex) {
+bool overlay_buffer(Renderer *renderer, GpuBuffer *buffer, const char *label, u64 size,
+                    bool vertex) {
     if (buffer->id && gpu_buffer_size(renderer->gpu, *buffer) >= size) return true;
     if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
     u64 cap = 4096;
@@ -33,50 +35,92 @@ static bool buffer_ensure(Renderer *renderer, GpuBuffer *buffer, const char *lab
     return buffer->id != 0;
 }
 
+typedef struct TextBuild {
+    OverlayVertex *out;
+    u32 quad_count;
+} TextBuild;
+
+// Characters as quads, twice: a dark copy one step down and right keeps them readable on bright
+// pictures.
+static void text_build_line(TextBuild *build, f32 x_px, f32 y_px, f32 size_px, u32 text_color,
+                            const char *characters, u32 length) {
+    static EasyFontVertex quads[TEXT_QUADS_MAX * 4];
+    char line[1024];
+    length = MIN(length, (u32)sizeof line - 1);
+    // The font knows ASCII only; anything else (names from a level) shows as '?'.
+    for (u32 k = 0; k < length; k++) {
+        u8 c = (u8)characters[k];
+        line[k] = (c >= 32 && c < 127) || c == '\n' ? (char)c : '?';
+    }
+    line[length] = 0;
+    f32 scale = size_px / EASY_FONT_HEIGHT;
+    u32 room = (TEXT_QUADS_MAX - build->quad_count) * 4 * (u32)sizeof(EasyFontVertex);
+    u32 made = (u32)stb_easy_font_print(0, 0, line, NULL, quads, (int)room);
+    for (u32 shadow = 0; shadow < 2; shadow++) {
+        f32 shift = shadow == 0 ? MAX(scale, 1.0f) : 0.0f;
+        u32 color = shadow == 0 ? 0xC0000000u : text_color;
+        for (u32 q = 0; q < made && build->quad_count < TEXT_QUADS_MAX; q++, build->quad_count++)
+            for (u32 v = 0; v < 4; v++)
+                build->out[build->quad_count * 4 + v] =
+                    (OverlayVertex){x_px + quads[q * 4 + v].x * scale + shift,
+                                    y_px + quads[q * 4 + v].y * scale + shift, -1.0f, -1.0f, color};
+    }
+}
+
 bool text_upload(Renderer *renderer, const Packet *packet) {
-    renderer->text_quad_count = 0;
-    if (packet->texts.count == 0) return true;
-    if (!buffer_ensure(renderer, &renderer->text_vertices, "text vertices",
-                       TEXT_QUADS_MAX * 4 * sizeof(OverlayVertex), true) ||
-        !buffer_ensure(renderer, &renderer->text_indices, "text indices",
-                       TEXT_QUADS_MAX * 6 * sizeof(u16), false))
+    memset(renderer->text_ends, 0, sizeof renderer->text_ends);
+    u32 note_count = renderer->note_count;
+    renderer->note_count = 0;
+    if (packet->texts.count == 0 && note_count == 0) return true;
+    if (!overlay_buffer(renderer, &renderer->text_vertices, "text vertices",
+                        TEXT_QUADS_MAX * 4 * sizeof(OverlayVertex), true) ||
+        !overlay_buffer(renderer, &renderer->text_indices, "text indices",
+                        TEXT_QUADS_MAX * 6 * sizeof(u16), false))
         return false;
-    OverlayVertex *out = gpu_buffer_map(renderer->gpu, renderer->text_vertices);
+    TextBuild build = {.out = gpu_buffer_map(renderer->gpu, renderer->text_vertices)};
     u16 *indices = gpu_buffer_map(renderer->gpu, renderer->text_indices);
     const PacketText *texts = PACKET_DATA(packet, texts, PacketText);
-    const u8 *characters = PACKET_DATA(packet, characters, u8);
-    static EasyFontVertex quads[TEXT_QUADS_MAX * 4];
-    u32 quad_count = 0;
-    for (u32 i = 0; i < packet->texts.count; i++) {
-        const PacketText *text = &texts[i];
-        char line[1024];
-        u32 length = MIN(text->length, (u32)sizeof line - 1);
-        // The font knows ASCII only; anything else (names from a level) shows as '?'.
-        for (u32 k = 0; k < length; k++) {
-            u8 c = characters[text->offset + k];
-            line[k] = (c >= 32 && c < 127) || c == '\n' ? (char)c : '?';
+    const char *characters = PACKET_DATA(packet, characters, char);
+    for (u32 i = 0; i < packet->texts.count; i++)
+        text_build_line(&build, texts[i].x_px, texts[i].y_px, texts[i].size_px, texts[i].color,
+                        characters + texts[i].offset, texts[i].length);
+    for (u32 layer = 0; layer < TEXT_LAYER_COUNT; layer++) {
+        for (u32 i = 0; i < note_count; i++) {
+            const Note *note = &renderer->notes[i];
+            if (note->layer == layer)
+                text_build_line(&build, note->x_px, note->y_px, note->size_px, note->color,
+                                note->text, (u32)strlen(note->text));
         }
-        line[length] = 0;
-        f32 scale = text->size_px / EASY_FONT_HEIGHT;
-        u32 room = (TEXT_QUADS_MAX - quad_count) * 4 * (u32)sizeof(EasyFontVertex);
-        u32 made = (u32)stb_easy_font_print(0, 0, line, NULL, quads, (int)room);
-        // Twice: a dark copy one step down and right keeps it readable on bright pictures.
-        for (u32 shadow = 0; shadow < 2; shadow++) {
-            f32 shift = shadow == 0 ? MAX(scale, 1.0f) : 0.0f;
-            u32 color = shadow == 0 ? 0xC0000000u : text->color;
-            for (u32 q = 0; q < made && quad_count < TEXT_QUADS_MAX; q++, quad_count++)
-                for (u32 v = 0; v < 4; v++)
-                    out[quad_count * 4 + v] = (OverlayVertex){
-                        text->x_px + quads[q * 4 + v].x * scale + shift,
-                        text->y_px + quads[q * 4 + v].y * scale + shift, -1.0f, -1.0f, color};
-        }
+        renderer->text_ends[layer] = build.quad_count;
     }
-    for (u32 q = 0; q < quad_count; q++) {
+    for (u32 q = 0; q < build.quad_count; q++) {
         static const u16 corners[6] = {0, 1, 2, 0, 2, 3};
         for (u32 k = 0; k < 6; k++) indices[q * 6 + k] = (u16)(q * 4 + corners[k]);
     }
-    renderer->text_quad_count = quad_count;
     return true;
+}
+
+void note_add(Renderer *renderer, TextLayer layer, f32 x_px, f32 y_px, f32 size_px, u32 color,
+              const char *format, ...) {
+    if (renderer->note_count == NOTES_CAP) return;
+    Note *note = &renderer->notes[renderer->note_count++];
+    *note = (Note){layer, x_px, y_px, size_px, color, ""};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(note->text, sizeof note->text, format, args);
+    va_end(args);
+}
+
+// Whole multiples of the font's grid, so that it stays sharp.
+f32 note_size(const Packet *packet) {
+    u32 times = MAX((packet->height_px + 180) / 540, 1);
+    return EASY_FONT_HEIGHT * (f32)times;
+}
+
+f32 note_width(f32 size_px, const char *text) {
+    char copy[sizeof((Note){0}).text];
+    snprintf(copy, sizeof copy, "%s", text);
+    return (f32)stb_easy_font_width(copy) * size_px / EASY_FONT_HEIGHT;
 }
 
 static void overlay_bind(const PassContext *c, PipelineKind kind, f32 width, f32 height,
@@ -89,21 +133,22 @@ static void overlay_bind(const PassContext *c, PipelineKind kind, f32 width, f32
     gpu_cmd_bind_indices(c->cmd, indices, true);
 }
 
-void text_record(const PassContext *c) {
+void text_record(const PassContext *c, TextLayer layer) {
     Renderer *r = c->renderer;
-    if (r->text_quad_count == 0) return;
+    u32 first = layer == 0 ? 0 : r->text_ends[layer - 1], end = r->text_ends[layer];
+    if (first == end) return;
     overlay_bind(c, PIPELINE_TEXT, (f32)c->packet->width_px, (f32)c->packet->height_px,
                  r->text_vertices, r->text_indices);
-    gpu_cmd_draw_indexed(c->cmd, r->text_quad_count * 6, 1, 0, 0, 0);
+    gpu_cmd_draw_indexed(c->cmd, (end - first) * 6, 1, first * 6, 0, 0);
     r->stats.draw_calls++;
 }
 
 void overlay_record(const PassContext *c, const Overlay *overlay) {
     Renderer *r = c->renderer;
     if (overlay->command_count == 0) return;
-    if (!buffer_ensure(r, &r->ui_vertices, "ui vertices",
-                       overlay->vertex_count * sizeof(OverlayVertex), true) ||
-        !buffer_ensure(r, &r->ui_indices, "ui indices", overlay->index_count * sizeof(u16), false))
+    if (!overlay_buffer(r, &r->ui_vertices, "ui vertices",
+                        overlay->vertex_count * sizeof(OverlayVertex), true) ||
+        !overlay_buffer(r, &r->ui_indices, "ui indices", overlay->index_count * sizeof(u16), false))
         return;
     memcpy(gpu_buffer_map(r->gpu, r->ui_vertices), overlay->vertices,
            overlay->vertex_count * sizeof(OverlayVertex));
@@ -137,8 +182,7 @@ bool renderer_set_overlay_texture(Renderer *renderer, const u8 *rgba, u32 width,
 }
 
 void overlay_destroy(Renderer *renderer) {
-    GpuBuffer buffers[] = {renderer->text_vertices, renderer->text_indices, renderer->ui_vertices,
-                           renderer->ui_indices};
+    GpuBuffer buffers[] = {renderer->ui_vertices, renderer->ui_indices};
     for (u32 i = 0; i < COUNT_OF(buffers); i++)
         if (buffers[i].id) gpu_destroy_buffer(renderer->gpu, buffers[i]);
     if (renderer->overlay_texture.id) gpu_destroy_texture(renderer->gpu, renderer->overlay_texture);

@@ -56,6 +56,26 @@ bool renderer_set_overlay_texture(Renderer *renderer, const u8 *rgba, u32 width,
 bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,
                    const Overlay *overlay);
 
+// Two packets side by side: the same view, drawn in two ways.
+typedef enum SplitMode {
+    SPLIT_LINE,       // A left of the line, B right of it
+    SPLIT_DIFFERENCE, // |A - B| times gain
+    SPLIT_BOTH,       // A, the difference in a band about the line, B
+    SPLIT_MODE_COUNT
+} SplitMode;
+#define SPLIT_MODE_WORDS "line difference both"
+#define SPLIT_GAIN       16.0f // one step of 255 is visible
+typedef struct SplitView {
+    f32 at;                        // the line, 0..1 of the width
+    u32 mode;                      // SplitMode
+    f32 gain;                      // of the difference; 0 = SPLIT_GAIN
+    const char *label_a, *label_b; // captions in the picture; NULL = none
+} SplitView;
+// As renderer_draw, with both packets in one submit. They must have the same size (else LOG USAGE,
+// false); paths, layouts and all other settings may differ.
+bool renderer_draw_split(Renderer *renderer, GpuCommands *cmd, const Packet *a, const Packet *b,
+                         const SplitView *split, bool to_swapchain, const Overlay *overlay);
+
 typedef struct RenderImage {
     u8 *rgba; // width * height * 4, sRGB encoded, rows from the top; in the arena given
     u32 width_px, height_px;
@@ -64,7 +84,18 @@ typedef struct RenderImage {
 // Begin, draw, wait, read back. out may be NULL (only draw and wait).
 bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,
                            RenderImage *out);
+// The same for a split picture.
+bool renderer_render_split(Renderer *renderer, const Packet *a, const Packet *b,
+                           const SplitView *split, Arena *arena, RenderImage *out);
 u64 render_image_hash(const u8 *rgba, u32 width_px, u32 height_px);
+
+// What a G-buffer layout takes of each pixel, without the depth buffer that all of them have.
+typedef struct RendererLayoutInfo {
+    const char *name;
+    u32 bytes;                 // all targets
+    u32 position_normal_bytes; // what tells position and normal
+} RendererLayoutInfo;
+RendererLayoutInfo renderer_layout_info(GbufferLayout layout);
 
 // Names of the passes of a path in order, for UIs. Times: gpu_timers of the newest finished frame.
 u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap);
@@ -72,8 +103,27 @@ u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap);
 // Stats of the last drawn frame.
 typedef struct RendererStats {
     u32 draw_calls, triangles, barriers, pipelines, shadow_redrawn;
+    // Light lists of the opaque surfaces: entries asked for, cells that use all lights because
+    // memory ran out, the longest list, occupied clusters (device lists only). Of lists made on
+    // the device, what the newest finished frame reported.
+    u32 list_indices, list_fallbacks, list_longest, clusters;
 } RendererStats;
 RendererStats renderer_stats(const Renderer *renderer);
+
+// For tests: lists made on the device get at most this many entries (0 = what the device allows),
+// and the buffers are made anew; cells that find no room use all lights.
+void renderer_limit_lists(Renderer *renderer, u32 index_limit, u32 cluster_limit);
+// For tests: what the device made in the last frame, which is done: CellRecord[], u32[],
+// TileDepthRecord[], u32[], u32[], u32[]. Returns the bytes copied, at most `size`; 0 = not there.
+typedef enum ListBuffer {
+    LIST_BUFFER_CELLS,
+    LIST_BUFFER_INDICES,
+    LIST_BUFFER_TILE_DEPTHS,
+    LIST_BUFFER_CLUSTERS,
+    LIST_BUFFER_PIXEL_CLUSTERS,
+    LIST_BUFFER_COUNTERS,
+} ListBuffer;
+u64 renderer_read_lists(Renderer *renderer, ListBuffer which, void *out, u64 size);
 
 #ifdef __cplusplus
 }

@@ -3,7 +3,7 @@
 // Data in: packet, asset store. Data out: commands of one frame, or pixels. The only state that
 // survives a frame is what was uploaded, the pipelines, and a shadow map whose key says what it
 // shows: the same packet gives the same image whatever was drawn before.
-#include "render_internal.h"
+#include "passes.h"
 #include "../base/hash.h"
 #include "../base/log.h"
 #include <stdlib.h>
@@ -61,29 +61,34 @@ static void shadow_map_ready(const PassContext *c) {
     r->usage[RESOURCE_SHADOW_MAP] = GPU_USAGE_SAMPLED_FRAGMENT;
 }
 
-static const PathRow *path_of(const Packet *packet) {
-    return packet->settings.view != VIEW_FINAL ? &debug_path : &path_table[packet->settings.path];
-}
-
-bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,
-                   const Overlay *overlay) {
-    u32 pipelines_before = renderer->stats.pipelines;
-    renderer->stats = (RendererStats){.pipelines = pipelines_before};
+bool packet_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet) {
     if (!frame_upload(renderer, packet)) return false;
-    PassContext context = {renderer, cmd, packet, overlay};
+    PassContext context = {.renderer = renderer, .cmd = cmd, .packet = packet};
     shadow_map_ready(&context);
     const PathRow *path = path_of(packet);
     for (u32 i = 0; i < PATH_PASSES_CAP && path->passes[i]; i++)
         pass_run(&context, path->passes[i]);
+    pass_run(&context, &debug_overlay_pass);
+    device_lists_stats(renderer, packet);
+    return true;
+}
+
+bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,
+                   const Overlay *overlay) {
+    renderer->stats = (RendererStats){.pipelines = renderer->stats.pipelines};
+    device_lists_read(renderer, gpu_frame_slot(renderer->gpu));
+    if (!packet_draw(renderer, cmd, packet)) return false;
+    PassContext context = {.renderer = renderer, .cmd = cmd, .packet = packet, .overlay = overlay};
     if (to_swapchain) pass_run(&context, &present_pass);
     return true;
 }
 
-bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,
-                           RenderImage *out) {
+static bool draw_and_wait(Renderer *renderer, const Packet *packet, const Packet *other,
+                          const SplitView *split, Arena *arena, RenderImage *out) {
     GpuCommands *cmd = gpu_frame_begin(renderer->gpu);
     if (!cmd) return false;
-    bool drawn = renderer_draw(renderer, cmd, packet, false, NULL);
+    bool drawn = split ? renderer_draw_split(renderer, cmd, packet, other, split, false, NULL)
+                       : renderer_draw(renderer, cmd, packet, false, NULL);
     if (drawn && out) {
         GpuBarrier barrier = {.texture = renderer->targets[RESOURCE_LDR],
                               .from = renderer->usage[RESOURCE_LDR],
@@ -93,7 +98,10 @@ bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *aren
         gpu_cmd_copy_texture_to_buffer(cmd, renderer->targets[RESOURCE_LDR], renderer->readback);
     }
     // A frame that failed half-way is still submitted: the slot must come free.
+    u32 slot = gpu_frame_slot(renderer->gpu);
     if (!gpu_frame_end(renderer->gpu, true) || !drawn) return false;
+    device_lists_read(renderer, slot);
+    device_lists_stats(renderer, packet);
     if (out) {
         u64 size = (u64)packet->width_px * packet->height_px * 4;
         out->width_px = packet->width_px;
@@ -103,6 +111,16 @@ bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *aren
         out->hash = render_image_hash(out->rgba, out->width_px, out->height_px);
     }
     return true;
+}
+
+bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,
+                           RenderImage *out) {
+    return draw_and_wait(renderer, packet, NULL, NULL, arena, out);
+}
+
+bool renderer_render_split(Renderer *renderer, const Packet *a, const Packet *b,
+                           const SplitView *split, Arena *arena, RenderImage *out) {
+    return draw_and_wait(renderer, a, b, split, arena, out);
 }
 
 u64 render_image_hash(const u8 *rgba, u32 width_px, u32 height_px) {

@@ -118,3 +118,46 @@ TEST(frame_settings, words_of_values) {
     assert_string_equal(settings_word("scale", 0, out, sizeof out), "");
     assert_string_equal(settings_word("path", PATH_TILED_DEFERRED, out, 6), "tiled");
 }
+
+TEST(frame_settings, lists_of_settings) {
+    RenderSettings s = settings_default();
+    assert_true(settings_set_list(&s, "deferred,layout=packed,shadows=off"));
+    assert_int_equal(s.path, PATH_DEFERRED);
+    assert_int_equal(s.layout, LAYOUT_PACKED);
+    assert_int_equal(s.shadows, 0);
+    assert_true(settings_set_list(&s, "layout=lean"));
+    assert_int_equal(s.path, PATH_DEFERRED);
+    assert_int_equal(s.layout, LAYOUT_LEAN);
+    RenderSettings before = s;
+    static const char *const mistakes[] = {"",         "foward",        "forward,,",
+                                           "forward,", "layout=lean,x", "shadows=off,exposure=x",
+                                           ",forward"};
+    for (u32 i = 0; i < COUNT_OF(mistakes); i++) {
+        assert_false(settings_set_list(&s, mistakes[i]));
+        assert_memory_equal(&s, &before, sizeof s); // also when an earlier word was right
+    }
+}
+
+static bool has_effect(const RenderSettings *settings, const char *name) {
+    for (u32 i = 0; i < render_setting_count; i++)
+        if (strcmp(render_setting_descs[i].name, name) == 0)
+            return setting_has_effect(settings, &render_setting_descs[i]);
+    fail_msg("no setting %s", name);
+    return false;
+}
+
+TEST(frame_settings, effect_depends_on_the_path) {
+    RenderSettings s = settings_default();
+    assert_true(settings_set_list(&s, "forward"));
+    assert_true(has_effect(&s, "msaa") && has_effect(&s, "exposure") && has_effect(&s, "merge"));
+    assert_false(has_effect(&s, "layout") || has_effect(&s, "tile_px") ||
+                 has_effect(&s, "light_scissor") || has_effect(&s, "clusters"));
+    assert_true(settings_set_list(&s, "deferred_volumes,manager=off"));
+    assert_true(has_effect(&s, "light_scissor") && has_effect(&s, "layout"));
+    assert_false(has_effect(&s, "msaa") || has_effect(&s, "merge"));
+    assert_true(settings_set_list(&s, "clustered_forward,clusters=gpu"));
+    assert_true(has_effect(&s, "cluster_normals") && has_effect(&s, "tile_px"));
+    assert_false(has_effect(&s, "grid"));
+    for (u32 i = 0; i < render_setting_count; i++)
+        assert_in_range(render_setting_descs[i].group, 0, SETTING_GROUP_COUNT - 1);
+}
