@@ -156,6 +156,11 @@ static const char *option_set(const ToolOption *option, const char *value) {
         list->items[list->count++] = value;
         return NULL;
     }
+    case OPTION_PAIR: {
+        const char **pair = option->target;
+        pair[pair[0] != NULL] = value;
+        return NULL;
+    }
     }
     return "something else";
 }
@@ -202,6 +207,17 @@ static ToolParse parse_option(const ToolSpec *spec, const OptionTable *table, in
     const ToolOption *option = find_option(table, argument, length);
     if (!option) return report_unknown(spec, table, argument, length);
     const char *value = argument[length] ? argument + length + 1 : NULL;
+    if (option->type == OPTION_PAIR) {
+        // Given again, it starts over; the first value may stand behind a '='.
+        memset(option->target, 0, 2 * sizeof(const char *));
+        if (*i + (value ? 1 : 2) >= argc) {
+            tool_fail(0, spec->command, "option '--%s' needs two values (%s)", option->name,
+                      option->value);
+            return PARSE_ERROR;
+        }
+        option_set(option, value ? value : argv[++*i]);
+        value = argv[++*i];
+    }
     if (option->type == OPTION_FLAG) {
         if (value) {
             tool_fail(0, spec->command, "option '--%s' takes no value", option->name);

@@ -196,33 +196,35 @@ static int info_frame(const char *path, Facts *facts, Arena *arena) {
 
 // --- device ---
 
+static void info_setting(Facts *facts, const RenderSettings *defaults, const SettingDesc *desc) {
+    char range[512], initial[64];
+    if (desc->type == SETTING_ENUM)
+        snprintf(range, sizeof range, "%s", desc->words);
+    else if (desc->type == SETTING_BOOL)
+        snprintf(range, sizeof range, "on off");
+    else
+        snprintf(range, sizeof range, "%g..%g", desc->min, desc->max);
+    setting_text(defaults, desc, initial, sizeof initial);
+    json_open_flat_object(&facts->json, NULL);
+    json_text(&facts->json, "name", desc->name);
+    json_text(&facts->json, "group", setting_group_titles[desc->group]);
+    json_text(&facts->json, "default", initial);
+    json_text(&facts->json, "range", range);
+    json_text(&facts->json, "help", desc->help);
+    json_close(&facts->json);
+    if (!facts->as_json)
+        printf("  %-18s %s\n  %-18s %s; default %s\n", desc->name, desc->help, "", range, initial);
+}
+
 static void info_settings(Facts *facts) {
+    RenderSettings defaults = settings_default();
     fact_section(facts, "settings (--set key=value)");
     json_open_array(&facts->json, "settings");
-    for (u32 i = 0; i < render_setting_count; i++) {
-        const SettingDesc *desc = &render_setting_descs[i];
-        char range[256], initial[64];
-        if (desc->type == SETTING_ENUM)
-            snprintf(range, sizeof range, "%s", desc->words);
-        else if (desc->type == SETTING_BOOL)
-            snprintf(range, sizeof range, "on off");
-        else
-            snprintf(range, sizeof range, "%g..%g", desc->min, desc->max);
-        if (desc->type == SETTING_ENUM)
-            settings_word(desc->name, (u32)desc->initial, initial, sizeof initial);
-        else if (desc->type == SETTING_BOOL)
-            snprintf(initial, sizeof initial, "%s", desc->initial ? "on" : "off");
-        else
-            snprintf(initial, sizeof initial, "%g", desc->initial);
-        json_open_flat_object(&facts->json, NULL);
-        json_text(&facts->json, "name", desc->name);
-        json_text(&facts->json, "default", initial);
-        json_text(&facts->json, "range", range);
-        json_text(&facts->json, "help", desc->help);
-        json_close(&facts->json);
-        if (!facts->as_json)
-            printf("  %-14s %s\n  %-14s %s; default %s\n", desc->name, desc->help, "", range,
-                   initial);
+    for (u32 group = 0; group < SETTING_GROUP_COUNT; group++) {
+        fact_section(facts, setting_group_titles[group]);
+        for (u32 i = 0; i < render_setting_count; i++)
+            if ((u32)render_setting_descs[i].group == group)
+                info_setting(facts, &defaults, &render_setting_descs[i]);
     }
     json_close(&facts->json);
 }

@@ -231,13 +231,14 @@ static int replay_recording(Replay *replay, Arena *arena) {
 
 static int replay_run(int argc, char **argv) {
     static Replay replay;
-    replay = (Replay){.options = {.shard = {1, 1}}};
+    replay = (Replay){.options = {.shard = {1, 1}, .split = SPLIT_OPTIONS_DEFAULT}};
     ReplayOptions *o = &replay.options;
     const ToolOption options[] = {
         {"out", 'o', OPTION_TEXT, &o->out, "FILE", "picture of the frame, or of the last tick"},
         {"path", 'p', OPTION_TEXT, &o->path, "P", "draw with another path"},
         {"view", 0, OPTION_TEXT, &o->view, "V", "draw another view"},
         {"set", 0, OPTION_LIST, &o->sets, "KEY=VALUE", "another render setting, repeatable"},
+        SPLIT_TOOL_OPTIONS(o->split),
         {"level", 0, OPTION_TEXT, &o->level, "LEVEL",
          "play this level instead of the recorded one"},
         {"images", 0, OPTION_FLAG, &o->images, NULL, "check pictures on any device"},
@@ -259,7 +260,8 @@ static int replay_run(int argc, char **argv) {
         .positional_max = 1,
         .examples = "  luz replay walk.luzr\n"
                     "  luz replay walk.luzr --images --diff out/diff --shard 2/4\n"
-                    "  luz replay frame.luzf --path forward -o frame.png\n",
+                    "  luz replay frame.luzf --path forward -o frame.png\n"
+                    "  luz replay frame.luzf --split forward deferred -o split.png\n",
     };
     ToolList positional;
     ToolParse parsed = tool_parse(&spec, argc, argv, &replay.common, &positional);
@@ -268,11 +270,16 @@ static int replay_run(int argc, char **argv) {
         return tool_fail(TOOL_USAGE, "replay", "--images and --no-images contradict each other");
     o->file = positional.items[0];
     const char *dot = strrchr(o->file, '.');
+    bool is_frame = dot && strcmp(dot, ".luzf") == 0;
+    if (o->split.mode && !o->split.ways[0])
+        return tool_fail(TOOL_USAGE, "replay", "--split-mode goes with --split A B");
+    if (o->split.ways[0] && !is_frame)
+        return tool_fail(TOOL_USAGE, "replay", "--split is for frames (.luzf)");
     tool_begin(&replay.common);
     int result = TOOL_ENVIRONMENT;
     Arena arena;
     if (arena_create(&arena, "replay", REPLAY_ARENA_CAP)) {
-        if (dot && strcmp(dot, ".luzf") == 0)
+        if (is_frame)
             result = replay_frame(o, &replay.common, &arena);
         else if (session_create(&replay.session, tool_session()))
             result = replay_recording(&replay, &arena);

@@ -4,16 +4,21 @@
 // captured.
 #include "replay.h"
 #include <stdio.h>
+#include <string.h>
 
 static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
-                      const AssetStore *store, const Packet *packet, Arena *arena,
-                      Headless *headless) {
+                      const AssetStore *store, const Packet *packet, Split *split,
+                      const Packet *other, Arena *arena, Headless *headless) {
     if (!headless_open(headless, common)) return TOOL_ENVIRONMENT;
     RenderImage image;
-    if (!renderer_set_assets(headless->renderer, store) ||
-        !renderer_warm_up_path(headless->renderer, packet) ||
-        !renderer_render_image(headless->renderer, packet, arena, &image))
+    if (!renderer_set_assets(headless->renderer, store)) return TOOL_ENVIRONMENT;
+    if (other) {
+        if (!split_draw(split, headless->renderer, packet, other, arena)) return TOOL_ENVIRONMENT;
+        image = split->image;
+    } else if (!renderer_warm_up_path(headless->renderer, packet) ||
+               !renderer_render_image(headless->renderer, packet, arena, &image)) {
         return TOOL_ENVIRONMENT;
+    }
     if (options->out &&
         !image_write_png(options->out, image.rgba, image.width_px, image.height_px, 4))
         return TOOL_ENVIRONMENT;
@@ -30,6 +35,7 @@ static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
         json_u64(&json, "height", image.height_px);
         json_u64(&json, "tick", packet->tick);
         json_hash(&json, "image_hash", image.hash);
+        if (other) split_json(split, &json);
         json_u64(&json, "validation_messages", messages);
         json_close(&json);
         json_print(&json);
@@ -37,9 +43,19 @@ static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
     } else if (!common->quiet) {
         printf("%s: %ux%u, tick %u, path %s, image hash %016llx\n", options->file, image.width_px,
                image.height_px, packet->tick, word, (unsigned long long)image.hash);
+        if (other) split_print(split);
     }
     if (messages) return tool_fail(TOOL_DIFFERENT, "replay", "%u validation messages", messages);
     return TOOL_OK;
+}
+
+// The same frame in another way.
+static const Packet *with_settings(const Packet *packet, const RenderSettings *settings,
+                                   Arena *arena) {
+    Packet *copy = arena_push(arena, packet->size, CACHE_LINE);
+    memcpy(copy, packet, packet->size);
+    copy->settings = *settings;
+    return copy;
 }
 
 int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *arena) {
@@ -50,7 +66,15 @@ int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *
     int result = TOOL_USAGE;
     if (headless_settings(&own->settings, options->path, options->view, &options->sets)) {
         Headless headless = {0};
-        result = draw_frame(options, common, &store, packet, arena, &headless);
+        static Split split;
+        const Packet *a = packet, *b = NULL;
+        bool ok = true;
+        if (options->split.ways[0]) {
+            ok = split_begin(&split, &options->split, &own->settings, "replay");
+            if (ok) a = with_settings(packet, &split.settings[0], arena);
+            if (ok) b = with_settings(packet, &split.settings[1], arena);
+        }
+        if (ok) result = draw_frame(options, common, &store, a, &split, b, arena, &headless);
         headless_close(&headless);
     }
     asset_store_destroy(&store);

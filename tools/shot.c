@@ -5,6 +5,7 @@
 #include "../engine/base/log.h"
 #include "../engine/capture/capture.h"
 #include "headless.h"
+#include "split.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@ typedef struct ShotOptions {
     bool has_range;
     u32 frame_count, range[2];
     ToolList sets;
+    SplitOptions split;
 } ShotOptions;
 
 typedef struct Shot {
@@ -32,6 +34,7 @@ typedef struct Shot {
     FrameTimes times;
     PacketCounts counts;
     u64 image_hash;
+    Split split;
 } Shot;
 
 // --- options ---
@@ -92,11 +95,21 @@ static bool options_are_sound(ShotOptions *options, const ToolCommon *common) {
         tool_fail(0, "shot", "--frames A..B goes with neither --tick, --stats nor --record-frame");
         return false;
     }
+    bool is_split = options->split.ways[0] != NULL;
+    if (options->split.mode && !is_split) {
+        tool_fail(0, "shot", "--split-mode goes with --split A B");
+        return false;
+    }
+    if (is_split && (options->has_range || options->stats || options->frame_file)) {
+        tool_fail(0, "shot", "--split goes with neither --frames A..B, --stats nor --record-frame");
+        return false;
+    }
     if (options->tick > TICKS_MAX) {
         tool_fail(0, "shot", "--tick is at most %u", TICKS_MAX);
         return false;
     }
-    if (options->out || options->stats || options->frame_file || common->json) return true;
+    if (options->out || options->stats || options->frame_file || common->json || is_split)
+        return true;
     tool_fail(0, "shot", "nothing to write: give -o, --stats, --record-frame or --json");
     return false;
 }
@@ -153,6 +166,24 @@ static int draw_one(Shot *shot) {
     if (options->frame_file &&
         !frame_file_write(options->frame_file, packet, &shot->session.assets))
         return TOOL_ENVIRONMENT;
+    return TOOL_OK;
+}
+
+static int draw_split(Shot *shot) {
+    session_advance(&shot->session, shot->options.tick);
+    Split *split = &shot->split;
+    const Packet *a, *b;
+    session_frame_begin(&shot->session);
+    shot->view.settings = split->settings[0];
+    if (!session_packet_split(&shot->session, &shot->view, &split->settings[1], &a, &b))
+        return TOOL_USAGE;
+    if (!split_draw(split, shot->headless.renderer, a, b, &shot->session.frame))
+        return TOOL_ENVIRONMENT;
+    shot->counts = a->counts;
+    shot->image_hash = split->image.hash;
+    if (shot->options.out && !write_image(shot, &split->image, shot->options.out))
+        return TOOL_ENVIRONMENT;
+    if (!shot->common.json) split_print(split);
     return TOOL_OK;
 }
 
@@ -254,6 +285,7 @@ static Json shot_stats(Shot *shot) {
     json_memory(&json, shot->headless.gpu);
     json_hash(&json, "world_hash", world_hash(shot->session.world));
     json_hash(&json, "image_hash", shot->image_hash);
+    if (shot->options.split.ways[0]) split_json(&shot->split, &json);
     json_u64(&json, "validation_messages", gpu_validation_message_count(shot->headless.gpu));
     json_close(&json);
     return json;
@@ -282,7 +314,9 @@ static int shot_draw(Shot *shot) {
     if (!headless_open(&shot->headless, &shot->common)) return TOOL_ENVIRONMENT;
     if (!renderer_set_assets(shot->headless.renderer, &shot->session.assets))
         return TOOL_ENVIRONMENT;
-    int result = shot->options.has_range ? draw_range(shot) : draw_one(shot);
+    int result = shot->options.split.ways[0] ? draw_split(shot)
+                 : shot->options.has_range   ? draw_range(shot)
+                                             : draw_one(shot);
     if (result == TOOL_OK) result = write_stats(shot);
     u32 messages = gpu_validation_message_count(shot->headless.gpu);
     if (result == TOOL_OK && messages)
@@ -292,7 +326,8 @@ static int shot_draw(Shot *shot) {
 
 static int shot_run(int argc, char **argv) {
     static Shot shot; // large arrays
-    shot = (Shot){.options = {.size = {1280, 720}}, .view = {.settings = settings_default()}};
+    shot = (Shot){.options = {.size = {1280, 720}, .split = SPLIT_OPTIONS_DEFAULT},
+                  .view = {.settings = settings_default()}};
     ShotOptions *o = &shot.options;
     const ToolOption options[] = {
         {"out", 'o', OPTION_TEXT, &o->out, "FILE", "the picture (PNG)"},
@@ -307,6 +342,7 @@ static int shot_run(int argc, char **argv) {
          "time N frames of one tick (default 1, with --stats 9);\n"
          "or draw ticks A to B into -o name_%04d.png"},
         {"set", 0, OPTION_LIST, &o->sets, "KEY=VALUE", "a render setting, repeatable"},
+        SPLIT_TOOL_OPTIONS(o->split),
         {"stats", 0, OPTION_TEXT, &o->stats, "FILE", "measurements as JSON"},
         {"record-frame", 0, OPTION_TEXT, &o->frame_file, "FILE",
          "the frame as .luzf, for `luz replay`"},
@@ -324,13 +360,17 @@ static int shot_run(int argc, char **argv) {
         .examples = "  luz shot data/levels/cloister.toml -o cloister.png\n"
                     "  luz shot model.glb -o model.png --size 640x360 --set exposure=2\n"
                     "  luz shot data/levels/cloister.toml -o t_%03d.png --frames 0..59\n"
-                    "  luz shot data/levels/cloister.toml --stats stats.json --frames 31\n",
+                    "  luz shot data/levels/cloister.toml --stats stats.json --frames 31\n"
+                    "  luz shot data/levels/cloister.toml -o split.png --split forward "
+                    "deferred,layout=packed\n",
     };
     ToolList positional;
     ToolParse parsed = tool_parse(&spec, argc, argv, &shot.common, &positional);
     if (parsed != PARSE_RUN) return parsed == PARSE_HELP ? TOOL_OK : TOOL_USAGE;
     if (!options_are_sound(o, &shot.common) ||
         !headless_settings(&shot.view.settings, o->path, o->view, &o->sets))
+        return TOOL_USAGE;
+    if (o->split.ways[0] && !split_begin(&shot.split, &o->split, &shot.view.settings, spec.command))
         return TOOL_USAGE;
     shot.level = positional.items[0];
     if (!o->frames && shot.common.json) o->frame_count = STATS_FRAMES;

@@ -47,6 +47,7 @@ typedef enum ToolOptionType {
     OPTION_SIZE,  // u32[2]: "1280x720"
     OPTION_SHARD, // u32[2]: "1/4", 1-based
     OPTION_LIST,  // ToolList: may be given many times
+    OPTION_PAIR,  // const char *[2]: two values
 } ToolOptionType;
 
 #define TOOL_LIST_CAP 256

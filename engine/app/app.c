@@ -23,6 +23,7 @@
 #define TEXT_LINE_PX    16.0f
 #define TEXTS_CAP       160
 #define ERROR_LINES_MAX 14
+#define SPLIT_TEXT_CAP  256
 #define COLOR_MESSAGE   0xFFFFFFFFu // red in the low byte
 #define COLOR_ERROR     0xFF6060FFu
 #define COLOR_HELP      0xFFF0E8D8u
@@ -41,6 +42,10 @@ bool app_create(App *app, const AppDesc *desc) {
     if (!app->desc.height_px) app->desc.height_px = APP_DEFAULT_HEIGHT;
     if (!app->desc.out_directory) app->desc.out_directory = "out";
     app->settings = desc->settings ? *desc->settings : settings_default();
+    app->split = desc->split != NULL;
+    app->split_view.at = 0.5f;
+    app->other_settings = app->split ? *desc->split : app->settings;
+    if (!app->split) app->other_settings.path = PATH_FORWARD;
     app->has_shader_directory = directory_exists(SHADER_DIRECTORY);
     jobs_start(desc->threads);
     SessionDesc session = {.components = desc->components,
@@ -270,6 +275,32 @@ static void texts_add_block(TextList *list, Arena *arena, u32 color, const char 
     if (*text) texts_add_line(list, color, "...");
 }
 
+// Where A and B differ, in words.
+static void texts_add_split(App *app, TextList *list) {
+    static const char *const modes[SPLIT_MODE_COUNT] = {"left A, right B", "difference of A and B",
+                                                        "left A, difference, right B"};
+    Arena *arena = &app->session.frame;
+    char *text = arena_push(arena, SPLIT_TEXT_CAP, 1);
+    u32 used =
+        (u32)snprintf(text, SPLIT_TEXT_CAP,
+                      "%s (X ends it):", modes[MIN(app->split_view.mode, SPLIT_MODE_COUNT - 1)]);
+    u32 count = 0;
+    for (u32 i = 0; i < render_setting_count; i++) {
+        const SettingDesc *desc = &render_setting_descs[i];
+        const RenderSettings *ways[2] = {&app->settings, &app->other_settings};
+        char a[64], b[64];
+        if (desc->offset == offsetof(RenderSettings, scale) ||
+            desc->offset == offsetof(RenderSettings, target_ms))
+            continue;
+        setting_text(ways[0], desc, a, sizeof a);
+        setting_text(ways[1], desc, b, sizeof b);
+        if (strcmp(a, b) == 0 || used + 1 >= SPLIT_TEXT_CAP) continue;
+        used += (u32)snprintf(text + used, SPLIT_TEXT_CAP - used, "%s %s %s | %s",
+                              count++ ? "," : "", desc->name, a, b);
+    }
+    texts_add_line(list, COLOR_MESSAGE, count ? text : "A and B are the same (X ends it)");
+}
+
 static void texts_add_states(App *app, TextList *list) {
     Arena *arena = &app->session.frame;
     f64 now = clock_now_ms();
@@ -284,6 +315,7 @@ static void texts_add_states(App *app, TextList *list) {
     for (u32 i = APP_MESSAGES_CAP; i-- > 0;)
         if (app->messages[i].until_ms > now)
             texts_add_line(list, COLOR_MESSAGE, app->messages[i].text);
+    if (app->split) texts_add_split(app, list);
     if (app->paused) texts_add_line(list, COLOR_MESSAGE, "paused (P goes on)");
     if (app->writer) texts_add_line(list, COLOR_ERROR, "recording (F5 stops)");
     if (app->help)
@@ -325,7 +357,10 @@ void app_internal_size(f32 scale, u32 width_px, u32 height_px, u32 *internal_wid
     *internal_height_px = (u32)CLAMP(height, APP_SIDE_MIN_PX, PACKET_SIDE_MAX);
 }
 
-static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u32 height_px) {
+// other: NULL = none is wanted.
+static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u32 height_px,
+                                   const Packet **other) {
+    if (other) *other = NULL;
     session_frame_begin(&app->session);
     if (!app->session.world) return NULL;
     app_internal_size(app->settings.scale, width_px, height_px, &app->internal_width_px,
@@ -335,18 +370,29 @@ static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u
                         .width_px = app->internal_width_px,
                         .height_px = app->internal_height_px};
     f64 start = clock_now_ms();
-    const Packet *packet = session_packet(&app->session, &view);
+    const Packet *packet = NULL;
+    if (!other || !app->split)
+        packet = session_packet(&app->session, &view);
+    else
+        session_packet_split(&app->session, &view, &app->other_settings, &packet, other);
     app->packet_ms = (f32)(clock_now_ms() - start);
     if (packet) app->counts = packet->counts;
     return packet;
 }
 
+const Packet *app_packets(App *app, u32 width_px, u32 height_px, const Packet **other) {
+    return app_packet_of(app, app->camera[0] ? app->camera : NULL, width_px, height_px, other);
+}
+
 const Packet *app_packet(App *app, u32 width_px, u32 height_px) {
-    return app_packet_of(app, app->camera[0] ? app->camera : NULL, width_px, height_px);
+    return app_packets(app, width_px, height_px, NULL);
 }
 
 bool app_picture(App *app, const char *camera, u32 width_px, u32 height_px, RenderImage *out) {
     if (!app_upload_assets(app)) return false;
-    const Packet *packet = app_packet_of(app, camera, width_px, height_px);
-    return packet && renderer_render_image(app->renderer, packet, &app->session.frame, out);
+    const Packet *other, *packet = app_packet_of(app, camera, width_px, height_px, &other);
+    if (!packet) return false;
+    return other ? renderer_render_split(app->renderer, packet, other, &app->split_view,
+                                         &app->session.frame, out)
+                 : renderer_render_image(app->renderer, packet, &app->session.frame, out);
 }

@@ -42,12 +42,14 @@ typedef struct AppDesc {
     const SystemPlacement *systems; // the program's own; before NULL = before "walk"
     u32 system_count;
     const RenderSettings *settings; // NULL = settings_default()
-    u32 width_px, height_px;        // 0 = 1280 x 720
-    u32 threads;                    // 0 = all cores
-    const char *device;             // part of a device's name; NULL = the best one
-    const char *camera;             // to look through at first; NULL = the player's eyes
-    const char *out_directory;      // pictures and recordings; NULL = "out"
-    f32 seconds;                    // quits after so many; 0 = never
+    // Windows: the same view drawn in these settings too, right of a line; NULL = not at first.
+    const RenderSettings *split;
+    u32 width_px, height_px;   // 0 = 1280 x 720
+    u32 threads;               // 0 = all cores
+    const char *device;        // part of a device's name; NULL = the best one
+    const char *camera;        // to look through at first; NULL = the player's eyes
+    const char *out_directory; // pictures and recordings; NULL = "out"
+    f32 seconds;               // quits after so many; 0 = never
     bool validation;
     bool fullscreen;
     bool headless;   // no window even if there is a display
@@ -82,6 +84,7 @@ typedef struct AppDesc {
 #define APP_SOFTWARE_SCALE  0.5f  // where it starts
 #define APP_SCALE_STEP      0.0625f
 #define APP_SIDE_MIN_PX     16
+#define APP_SPLIT_STEP      0.05f // of the line, by a key
 
 typedef struct AppMessage {
     char text[256];
@@ -92,6 +95,10 @@ struct App {
     AppDesc desc;
     Session session;
     RenderSettings settings;
+    // The picture is split: settings left of a line, other_settings right of it (same resolution).
+    bool split;
+    RenderSettings other_settings;
+    SplitView split_view;
     Gpu *gpu; // NULL until app_open_device
     Renderer *renderer;
     u64 assets_in_use; // AssetStore.stamp that the renderer holds
@@ -160,6 +167,8 @@ bool app_restart(App *app);
 // The frame packet of what is looked at, for a picture of width x height pixels at settings.scale.
 // NULL if there is no world. Valid until the next call.
 const Packet *app_packet(App *app, u32 width_px, u32 height_px);
+// The same; *other gets the second packet of a split picture, NULL if it is not split.
+const Packet *app_packets(App *app, u32 width_px, u32 height_px, const Packet **other);
 // HUD, messages, errors and help, in window pixels: after app_packet, valid as long as the packet.
 // They are not in the packet, so that small internal resolutions do not blur them. The first *boxed
 // of them (errors, help) want a dark ground. Returns how many.
@@ -183,7 +192,8 @@ void app_set_camera(App *app, const char *name);
 void app_record_start(App *app, const char *path); // NULL = the next free out/recording_NNN.luzr
 void app_record_stop(App *app);
 bool app_replay_open(App *app, const char *path); // loads the level that it names
-void app_write_screenshot(App *app, const Packet *packet);
+// other: the second packet of a split picture, or NULL.
+void app_write_screenshot(App *app, const Packet *packet, const Packet *other);
 void app_write_frame_file(App *app, const Packet *packet);
 // One line of JSON, replacing the file. `text` is what is wrong at the moment ("" = nothing).
 void app_write_status(App *app, u32 width_px, u32 height_px);

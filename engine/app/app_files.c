@@ -29,13 +29,15 @@ bool app_next_path(App *app, const char *stem, const char *extension, char *out,
 
 // --- Pictures and frames ---
 
-void app_write_screenshot(App *app, const Packet *packet) {
+void app_write_screenshot(App *app, const Packet *packet, const Packet *other) {
     char path[512];
     if (!app_next_path(app, "screenshot", "png", path, sizeof path)) return;
     Arena *scratch = &app->session.scratch;
     u64 mark = arena_mark(scratch);
     RenderImage image;
-    bool ok = renderer_render_image(app->renderer, packet, scratch, &image) &&
+    bool ok = (other ? renderer_render_split(app->renderer, packet, other, &app->split_view,
+                                             scratch, &image)
+                     : renderer_render_image(app->renderer, packet, scratch, &image)) &&
               image_write_png(path, image.rgba, image.width_px, image.height_px, 4);
     arena_rewind(scratch, mark);
     app_say(app, ok ? "wrote %s" : "could not write %s", path);
@@ -138,19 +140,20 @@ void app_write_status(App *app, u32 width_px, u32 height_px) {
     char word[32], error[1024], level[1024], line[4096];
     json_escape(level, sizeof level, app->session.level_path);
     json_escape(error, sizeof error, app->level_error[0] ? app->level_error : app->shader_error);
-    int size =
-        snprintf(line, sizeof line,
-                 "{\"tick\": %u, \"position\": [%.3f, %.3f, %.3f], \"yaw\": %.2f, \"pitch\": %.2f, "
-                 "\"path\": \"%s\", \"fps\": %.1f, \"size\": [%u, %u], \"internal\": [%u, %u], "
-                 "\"level\": \"%s\", \"level_hash\": \"%016llx\", \"lights\": %u, \"panel\": %s, "
-                 "\"paused\": %s, \"recording\": %s, \"validation\": %u, \"errors\": \"%s\"}\n",
-                 world->tick, place[0], place[1], place[2], place[3], place[4],
-                 settings_word("path", app->settings.path, word, sizeof word), app->fps, width_px,
-                 height_px, app->internal_width_px, app->internal_height_px, level,
-                 (unsigned long long)app->session.level.content_hash, app->counts.lights_total,
-                 app->panel ? "true" : "false", app->paused ? "true" : "false",
-                 app->writer ? "true" : "false",
-                 app->gpu ? gpu_validation_message_count(app->gpu) : 0, error);
+    int size = snprintf(
+        line, sizeof line,
+        "{\"tick\": %u, \"position\": [%.3f, %.3f, %.3f], \"yaw\": %.2f, \"pitch\": %.2f, "
+        "\"path\": \"%s\", \"fps\": %.1f, \"size\": [%u, %u], \"internal\": [%u, %u], "
+        "\"level\": \"%s\", \"level_hash\": \"%016llx\", \"lights\": %u, \"panel\": %s, "
+        "\"paused\": %s, \"recording\": %s, \"split\": %s, \"split_at\": %.2f, "
+        "\"split_mode\": %u, \"validation\": %u, \"errors\": \"%s\"}\n",
+        world->tick, place[0], place[1], place[2], place[3], place[4],
+        settings_word("path", app->settings.path, word, sizeof word), app->fps, width_px, height_px,
+        app->internal_width_px, app->internal_height_px, level,
+        (unsigned long long)app->session.level.content_hash, app->counts.lights_total,
+        app->panel ? "true" : "false", app->paused ? "true" : "false",
+        app->writer ? "true" : "false", app->split ? "true" : "false", (f64)app->split_view.at,
+        app->split_view.mode, app->gpu ? gpu_validation_message_count(app->gpu) : 0, error);
     if (!file_write(app->desc.status_path, line, (u64)size)) {
         app_say(app, "cannot write %s", app->desc.status_path);
         app->desc.status_path = NULL; // once is enough

@@ -62,6 +62,21 @@ static void change_scale(App *app, f32 by) {
 static void key_scale_up(App *app) { change_scale(app, 2 * APP_SCALE_STEP); }
 static void key_scale_down(App *app) { change_scale(app, -2 * APP_SCALE_STEP); }
 
+// The second way keeps its settings while the picture is whole.
+static void key_split(App *app) {
+    app->split = !app->split;
+    if (!app->split) app_say(app, "one picture");
+}
+static void move_split(App *app, f32 by) {
+    app->split_view.at = CLAMP(app->split_view.at + by, 0.0f, 1.0f);
+}
+static void key_split_left(App *app) { move_split(app, -APP_SPLIT_STEP); }
+static void key_split_right(App *app) { move_split(app, APP_SPLIT_STEP); }
+static void key_split_mode(App *app) {
+    app->split_view.mode = (app->split_view.mode + 1) % SPLIT_MODE_COUNT;
+    app->split = true;
+}
+
 static void key_pause(App *app) { app->paused = !app->paused; }
 static void key_panel(App *app) { app->panel = !app->panel; }
 static void key_help(App *app) { app->help = !app->help; }
@@ -107,6 +122,10 @@ static const Key keys[] = {
     {KEY_KP_ADD, NULL, key_scale_up},
     {'-', NULL, key_scale_down},
     {KEY_KP_SUBTRACT, NULL, key_scale_down},
+    {'X', "X          two ways beside each other; again: one", key_split},
+    {'[', "[ ]        move the line between them (or drag it)", key_split_left},
+    {']', NULL, key_split_right},
+    {'N', "N          their difference as a picture, or a band of it", key_split_mode},
     {'P', "P          pause", key_pause},
     {KEY_F1, "F1 or Tab  debug panel", key_panel},
     {KEY_TAB, NULL, key_panel},

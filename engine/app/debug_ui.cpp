@@ -135,6 +135,11 @@ static void panel_cpu(const App *app) {
     ImGui::Text("%6.2f packet: cull %.2f lights %.2f", (f64)app->packet_ms, (f64)times->cull_ms,
                 (f64)times->lights_ms);
     ImGui::Text("               grid %.2f pack %.2f", (f64)times->grid_ms, (f64)times->pack_ms);
+    const f32 *stages = times->light_stage_ms;
+    ImGui::Text("               cull %.2f hide %.2f+%.2f merge %.2f drop %.2f budget %.2f",
+                (f64)stages[LIGHT_STAGE_FRUSTUM], (f64)times->occluders_ms,
+                (f64)stages[LIGHT_STAGE_OCCLUSION], (f64)stages[LIGHT_STAGE_MERGE],
+                (f64)stages[LIGHT_STAGE_DROP], (f64)stages[LIGHT_STAGE_BUDGET]);
 }
 
 static void panel_counts(const App *app) {
@@ -156,42 +161,189 @@ static void words_to_items(const char *words, char *out, u64 out_cap) {
     out[length] = out[length + 1] = '\0';
 }
 
-static void panel_settings(App *app) {
-    if (!ImGui::CollapsingHeader("settings", ImGuiTreeNodeFlags_DefaultOpen)) return;
+// One setting's control.
+static void panel_setting(RenderSettings *settings, const SettingDesc *desc) {
+    u8 *field = (u8 *)settings + desc->offset;
+    bool has_effect = setting_has_effect(settings, desc);
+    if (!has_effect) ImGui::BeginDisabled();
+    switch (desc->type) {
+    case SETTING_BOOL: {
+        u32 value;
+        memcpy(&value, field, sizeof value);
+        bool on = value != 0;
+        if (ImGui::Checkbox(desc->name, &on)) value = on;
+        memcpy(field, &value, sizeof value);
+        break;
+    }
+    case SETTING_ENUM: {
+        char items[512];
+        words_to_items(desc->words, items, sizeof items);
+        ImGui::Combo(desc->name, (int *)field, items);
+        break;
+    }
+    case SETTING_F32: {
+        // Wide ranges need a finer hand near zero.
+        ImGuiSliderFlags flags = desc->max > 100.0 ? ImGuiSliderFlags_Logarithmic : 0;
+        f32 max = desc->max > 100.0 ? 100.0f : (f32)desc->max;
+        ImGui::SliderFloat(desc->name, (f32 *)field, (f32)desc->min, max, "%.2f", flags);
+        break;
+    }
+    case SETTING_U32:
+        ImGui::InputInt(desc->name, (int *)field, 64, 256);
+        break;
+    }
+    if (!has_effect) ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s%s", desc->help, has_effect ? "" : " (no effect with this path)");
+}
+
+// All settings, by group; the first group is open.
+static void panel_setting_groups(RenderSettings *settings, bool has_size) {
     ImGui::PushItemWidth(130.0f);
-    for (u32 i = 0; i < render_setting_count; i++) {
-        const SettingDesc *desc = &render_setting_descs[i];
-        u8 *field = (u8 *)&app->settings + desc->offset;
-        switch (desc->type) {
-        case SETTING_BOOL: {
-            u32 value;
-            memcpy(&value, field, sizeof value);
-            bool on = value != 0;
-            if (ImGui::Checkbox(desc->name, &on)) value = on;
-            memcpy(field, &value, sizeof value);
-            break;
+    for (u32 group = 0; group < SETTING_GROUP_COUNT; group++) {
+        if (!ImGui::TreeNodeEx(setting_group_titles[group],
+                               group == 0 ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+            continue;
+        for (u32 i = 0; i < render_setting_count; i++) {
+            const SettingDesc *desc = &render_setting_descs[i];
+            bool is_size = desc->offset == offsetof(RenderSettings, scale) ||
+                           desc->offset == offsetof(RenderSettings, target_ms);
+            if ((u32)desc->group == group && (has_size || !is_size)) panel_setting(settings, desc);
         }
-        case SETTING_ENUM: {
-            char items[512];
-            words_to_items(desc->words, items, sizeof items);
-            ImGui::Combo(desc->name, (int *)field, items);
-            break;
-        }
-        case SETTING_F32: {
-            // Wide ranges need a finer hand near zero.
-            ImGuiSliderFlags flags = desc->max > 100.0 ? ImGuiSliderFlags_Logarithmic : 0;
-            f32 max = desc->max > 100.0 ? 100.0f : (f32)desc->max;
-            ImGui::SliderFloat(desc->name, (f32 *)field, (f32)desc->min, max, "%.2f", flags);
-            break;
-        }
-        case SETTING_U32:
-            ImGui::InputInt(desc->name, (int *)field, 64, 256);
-            break;
-        }
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", desc->help);
+        ImGui::TreePop();
     }
     ImGui::PopItemWidth();
-    settings_clamp(&app->settings);
+    settings_clamp(settings);
+}
+
+static void panel_settings(App *app) {
+    if (!ImGui::CollapsingHeader("settings", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    ImGui::PushID("settings");
+    panel_setting_groups(&app->settings, true);
+    ImGui::PopID();
+}
+
+// The second way: what it is, where the line is, its own settings.
+static void panel_split(App *app) {
+    if (!ImGui::CollapsingHeader("split")) return;
+    ImGui::PushID("split");
+    ImGui::Checkbox("two ways (X)", &app->split);
+    ImGui::PushItemWidth(130.0f);
+    char items[128];
+    words_to_items(SPLIT_MODE_WORDS, items, sizeof items);
+    ImGui::Combo("shown", (int *)&app->split_view.mode, items);
+    ImGui::SliderFloat("line", &app->split_view.at, 0.0f, 1.0f, "%.2f");
+    f32 gain = app->split_view.gain > 0.0f ? app->split_view.gain : SPLIT_GAIN;
+    if (ImGui::SliderFloat("gain", &gain, 1.0f, 255.0f, "%.0f", ImGuiSliderFlags_Logarithmic))
+        app->split_view.gain = gain;
+    ImGui::PopItemWidth();
+    if (ImGui::Button("B like A")) app->other_settings = app->settings;
+    ImGui::SameLine();
+    if (ImGui::Button("exchange")) {
+        RenderSettings kept = app->settings;
+        app->settings = app->other_settings;
+        app->settings.scale = kept.scale;
+        app->settings.target_ms = kept.target_ms;
+        app->other_settings = kept;
+    }
+    ImGui::TextUnformatted("settings of B:");
+    panel_setting_groups(&app->other_settings, false);
+    ImGui::PopID();
+}
+
+// --- The level's own rows ---
+
+static bool column_control(const ColumnDesc *column, void *value) {
+    switch (column->type) {
+    case COLUMN_F32: {
+        ImGuiSliderFlags flags = column->max > 100.0 ? ImGuiSliderFlags_Logarithmic : 0;
+        f32 max = (f32)MIN(column->max, 1000.0), min = (f32)MAX(column->min, -1000.0);
+        return ImGui::SliderFloat(column->name, (f32 *)value, min, max,
+                                  column->max > 1.0 ? "%.2f" : "%.4f",
+                                  flags | ImGuiSliderFlags_AlwaysClamp);
+    }
+    case COLUMN_U32:
+    case COLUMN_I32: {
+        int number = *(int *)value;
+        if (!ImGui::InputInt(column->name, &number)) return false;
+        f64 clamped = CLAMP((f64)number, column->min, column->max);
+        *(int *)value = (int)clamped;
+        return true;
+    }
+    case COLUMN_BOOL: {
+        bool on = *(u32 *)value != 0;
+        bool changed = ImGui::Checkbox(column->name, &on);
+        *(u32 *)value = on;
+        return changed;
+    }
+    case COLUMN_ENUM: {
+        char items[512];
+        words_to_items(column->unit, items, sizeof items);
+        return ImGui::Combo(column->name, (int *)value, items);
+    }
+    default:
+        return false;
+    }
+}
+
+// Controls of one row's columns that level text can set. They act at once; the level's file stays.
+static void panel_row(Table *table, u32 row) {
+    bool changed = false;
+    ImGui::PushItemWidth(130.0f);
+    for (u32 i = 0; i < table->desc->column_count; i++) {
+        const ColumnDesc *column = &table->desc->columns[i];
+        if (!column->key[0]) continue;
+        changed |= column_control(column, (u32 *)table_columns(table)[i] + row);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s%s%s", column->help, column->type == COLUMN_ENUM ? "" : ", ",
+                              column->type == COLUMN_ENUM ? "" : column->unit);
+    }
+    ImGui::PopItemWidth();
+    if (changed) table_touch(table, row);
+}
+
+// A recording or replay must see the level as it is in its file.
+static bool can_edit(const App *app) {
+    return app->session.world && !app->writer && !app->has_replay;
+}
+
+static void panel_manager(App *app) {
+    if (!ImGui::CollapsingHeader("light manager")) return;
+    const PacketCounts *c = &app->counts;
+    u32 outside = c->lights_total - MIN(c->lights_visible + c->lights_occluded, c->lights_total);
+    ImGui::Text("%6u lights of the level", c->lights_total);
+    ImGui::Text("%6u - outside the view", outside);
+    ImGui::Text("%6u - occluded", c->lights_occluded);
+    ImGui::Text("%6u - merged pairs, error %.4f", c->lights_merged_pairs, (f64)c->merge_error);
+    ImGui::Text("%6u - too small or faint", c->lights_dropped);
+    ImGui::Text("%6u - over the budget", c->lights_over_budget);
+    ImGui::Text("%6u shaded, %u of them fading", c->lights_shaded, c->lights_fading);
+    ImGui::Text("%6u near, %u between, %u far", c->lights_near, c->lights_between, c->lights_far);
+    ImGui::Text("%6u occluders, %u drawables behind", c->occluders, c->drawables_occluded);
+    ImGui::Text("%6.2f ms lights, %.2f ms lists", (f64)app->session.packet_times.lights_ms,
+                (f64)app->session.packet_times.grid_ms);
+    if (!can_edit(app)) return;
+    Table *table = app->session.world->tables[COMPONENT_light_manager];
+    ImGui::PushID("manager");
+    if (table->count > 0)
+        panel_row(table, 0);
+    else if (ImGui::Button("change its numbers"))
+        world_singleton(app->session.world, COMPONENT_light_manager);
+    ImGui::PopID();
+}
+
+static void panel_post(App *app) {
+    if (!can_edit(app)) return;
+    Table *table = app->session.world->tables[COMPONENT_post];
+    if (table->count == 0 || !ImGui::CollapsingHeader("post chain")) return;
+    for (u32 row = 0; row < table->count; row++) {
+        const char *name = world_name(app->session.world, table->entity[row]);
+        char title[96];
+        snprintf(title, sizeof title, "%s###post%u", name[0] ? name : "step", row);
+        if (!ImGui::TreeNode(title)) continue;
+        panel_row(table, row);
+        ImGui::TreePop();
+    }
 }
 
 static void panel_level(App *app) {
@@ -227,6 +379,9 @@ static void draw_panel(App *app, u32 width_px) {
         panel_cpu(app);
         panel_counts(app);
         panel_settings(app);
+        panel_split(app);
+        panel_manager(app);
+        panel_post(app);
     }
     ImGui::End();
 }

@@ -15,6 +15,7 @@ typedef enum OptionKind {
     OPTION_NUMBER, // sets an f32
     OPTION_SIZE,   // WxH
     OPTION_SET,    // key=value of the render settings
+    OPTION_SPLIT,  // two words
     OPTION_HELP,
 } OptionKind;
 
@@ -39,6 +40,8 @@ static const Option options_table[] = {
     {"--device", "NAME", "part of a device's name, e.g. llvmpipe", OPTION_TEXT, FIELD(device)},
     {"--validation", NULL, "check every Vulkan call", OPTION_FLAG, FIELD(validation)},
     {"--set", "KEY=VALUE", "a setting (below); may be given often", OPTION_SET, 0},
+    {"--split", "A B", "draw two ways beside each other: forward deferred,layout=packed",
+     OPTION_SPLIT, 0},
     {"--record", "FILE", "record from the first tick on", OPTION_TEXT, FIELD(record_path)},
     {"--replay", "FILE", "play a recording, check every tick", OPTION_TEXT, FIELD(replay_path)},
     {"--fixed", NULL, "one tick a frame, whatever the clock says", OPTION_FLAG, FIELD(fixed_step)},
@@ -47,6 +50,15 @@ static const Option options_table[] = {
      FIELD(status_path)},
     {"--help", NULL, "this text", OPTION_HELP, 0},
 };
+
+static void print_setting(const SettingDesc *setting) {
+    printf("  %-18s %s", setting->name, setting->help);
+    if (setting->type == SETTING_ENUM)
+        printf(" (%s)", setting->words);
+    else if (setting->type != SETTING_BOOL)
+        printf(" (%g .. %g)", setting->min, setting->max);
+    printf("\n");
+}
 
 static void print_help(const char *program, const AppDesc *desc) {
     printf("%s\nusage: %s [options] [level]\n\n", desc->title ? desc->title : "luz", program);
@@ -59,14 +71,11 @@ static void print_help(const char *program, const AppDesc *desc) {
     }
     if (desc->help) printf("%s\n", desc->help);
     printf("\nsettings for --set:\n");
-    for (u32 i = 0; i < render_setting_count; i++) {
-        const SettingDesc *setting = &render_setting_descs[i];
-        printf("  %-18s %s", setting->name, setting->help);
-        if (setting->type == SETTING_ENUM)
-            printf(" (%s)", setting->words);
-        else if (setting->type != SETTING_BOOL)
-            printf(" (%g .. %g)", setting->min, setting->max);
-        printf("\n");
+    for (u32 group = 0; group < SETTING_GROUP_COUNT; group++) {
+        printf(" %s\n", setting_group_titles[group]);
+        for (u32 i = 0; i < render_setting_count; i++)
+            if ((u32)render_setting_descs[i].group == group)
+                print_setting(&render_setting_descs[i]);
     }
     printf("\nIn the window, H lists the keys.\n");
 }
@@ -125,15 +134,33 @@ static bool apply_option(const Option *option, const char *value, AppDesc *desc,
         desc->fixed_resolution |= strncmp(value, "scale=", 6) == 0;
         desc->fixed_resolution |= strncmp(value, "target_ms=", 10) == 0;
         return settings_set(&options->settings, value);
+    case OPTION_SPLIT: // its words are read when all settings are known
     case OPTION_HELP:
         break;
     }
     return true;
 }
 
+// A over the settings, B beside them; they can differ in all but the resolution.
+static bool apply_split(const char *const ways[2], AppDesc *desc, AppOptions *options) {
+    options->split = options->settings;
+    f32 scale = options->settings.scale, target_ms = options->settings.target_ms;
+    if (!settings_set_list(&options->settings, ways[0]) ||
+        !settings_set_list(&options->split, ways[1]))
+        return false;
+    if (options->settings.scale != scale || options->split.scale != scale ||
+        options->settings.target_ms != target_ms || options->split.target_ms != target_ms) {
+        LOG(USAGE, "--split: both ways have one size; give scale and target_ms with --set");
+        return false;
+    }
+    desc->split = &options->split;
+    return true;
+}
+
 int app_parse_options(int argc, char **argv, AppDesc *desc, AppOptions *options) {
     options->settings = desc->settings ? *desc->settings : settings_default();
     desc->settings = &options->settings;
+    const char *ways[2] = {0};
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
         if (word[0] != '-') {
@@ -163,10 +190,18 @@ int app_parse_options(int argc, char **argv, AppDesc *desc, AppOptions *options)
             LOG(USAGE, "%s needs %s: %s", option->name, option->argument, option->help);
             return 2;
         }
+        if (option->kind == OPTION_SPLIT) {
+            if (i + 1 >= argc) {
+                LOG(USAGE, "%s needs %s: %s", option->name, option->argument, option->help);
+                return 2;
+            }
+            ways[0] = value;
+            ways[1] = argv[++i];
+        }
         if (!apply_option(option, value, desc, options)) {
             LOG(USAGE, "%s %s makes no sense: %s", option->name, value, option->help);
             return 2;
         }
     }
-    return OPTIONS_GO_ON;
+    return ways[0] && !apply_split(ways, desc, options) ? 2 : OPTIONS_GO_ON;
 }

@@ -10,7 +10,7 @@ extern "C" {
 
 // What the options point to: keep it as long as the desc.
 typedef struct AppOptions {
-    RenderSettings settings;
+    RenderSettings settings, split;
 } AppOptions;
 
 #define OPTIONS_GO_ON (-1)

@@ -5,6 +5,7 @@
 #include "session.h"
 #include "../base/clock.h"
 #include "../base/log.h"
+#include "../systems/light_manager.h"
 #include "session_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,6 +41,7 @@ bool session_create(Session *session, const SessionDesc *desc) {
               arena_create(&session->level_arena[0], "session level 0", SESSION_LEVEL_CAP) &&
               arena_create(&session->level_arena[1], "session level 1", SESSION_LEVEL_CAP) &&
               session_register_systems(session);
+    session->light_manager = light_manager_create();
     if (!ok) session_destroy(session);
     return ok;
 }
@@ -66,6 +68,7 @@ static void session_unload(Session *session) {
 
 void session_destroy(Session *session) {
     session_unload(session);
+    light_manager_destroy(session->light_manager);
     Arena *arenas[] = {&session->frame, &session->scratch, &session->level_arena[0],
                        &session->level_arena[1]};
     for (u32 i = 0; i < COUNT_OF(arenas); i++)
@@ -278,9 +281,14 @@ static void session_adopt(Session *session, const LoadedLevel *fresh, u64 *file_
     if (place) player_place_restore(session, place);
     session_settle(session);
     session->collision = collision_create(session->world, &session->assets);
-    if (!session->desc.on_load) return;
-    session->desc.on_load(session, session->desc.user);
-    session_settle(session); // what it added has derived columns as well
+    if (session->desc.on_load) {
+        session->desc.on_load(session, session->desc.user);
+        session_settle(session); // what it added has derived columns as well
+    }
+    // The state begins here, not with the first packet: it must not hang on when that is asked for.
+    session->packet_camera = ENTITY_NONE;
+    light_manager_cut(session->light_manager, session->world, &session->assets, session->player,
+                      &session->scratch);
 }
 
 bool session_load_below(Session *session, const char *root_path, const char *relative,
@@ -328,6 +336,10 @@ void session_tick(Session *session, Input input) {
     f64 start = clock_now_ms();
     SystemContext context = session_context(session, input);
     systems_tick(&session->systems, &context);
+    // The camera of the last packet; before the first one the player's.
+    Entity camera = session->packet_camera ? session->packet_camera : session->player;
+    light_manager_tick(session->light_manager, session->world, &session->assets, camera,
+                       &session->scratch);
     session->tick_ms = (f32)(clock_now_ms() - start);
 }
 
@@ -360,13 +372,17 @@ static void session_report_cameras(const Session *session, const char *wanted) {
         used ? "are" : "is", used ? names : "none with a name");
 }
 
-const Packet *session_packet(Session *session, const SessionView *view) {
+// Without leaving a trace in the session: what was there before this packet is there afterwards.
+static const Packet *build_packet(Session *session, const SessionView *view, Entity *out_camera) {
     if (!session->world) return NULL;
     Entity camera = session_camera(session, view->camera);
     if (camera == ENTITY_NONE && view->camera) {
         session_report_cameras(session, view->camera);
         return NULL;
     }
+    if (!light_manager_knows(session->light_manager, session->world, camera))
+        light_manager_cut(session->light_manager, session->world, &session->assets, camera,
+                          &session->scratch);
     PacketBuildDesc desc = {.world = session->world,
                             .assets = &session->assets,
                             .camera = camera,
@@ -375,12 +391,19 @@ const Packet *session_packet(Session *session, const SessionView *view) {
                             .height_px = view->height_px,
                             .texts = view->texts,
                             .text_count = view->text_count,
-                            .last_stamp = session->packet_stamp};
+                            .last_stamp = session->packet_stamp,
+                            .light_manager = session->light_manager};
     // After a cut to another camera nothing has moved on the picture.
     if (session->packet_stamp && session->packet_camera == camera)
         desc.previous_view_projection = session->packet_view_projection.m;
-    const Packet *packet =
-        packet_build(&desc, &session->frame, &session->scratch, &session->packet_times);
+    *out_camera = camera;
+    return packet_build(&desc, &session->frame, &session->scratch, &session->packet_times);
+}
+
+const Packet *session_packet(Session *session, const SessionView *view) {
+    Entity camera;
+    const Packet *packet = build_packet(session, view, &camera);
+    if (!packet) return NULL;
     // What somebody changes after this packet has a later stamp than what it shows.
     session->packet_camera = camera;
     memcpy(session->packet_view_projection.m, packet->frame.view_projection,
@@ -388,4 +411,16 @@ const Packet *session_packet(Session *session, const SessionView *view) {
     session->packet_stamp = session->world->stamp;
     world_advance_stamp(session->world);
     return packet;
+}
+
+bool session_packet_split(Session *session, const SessionView *view, const RenderSettings *other,
+                          const Packet **a, const Packet **b) {
+    SessionView other_view = *view;
+    other_view.settings = *other;
+    other_view.settings.scale = view->settings.scale;
+    // B first: the session remembers A, as if B had never been.
+    Entity camera;
+    *b = build_packet(session, &other_view, &camera);
+    *a = *b ? session_packet(session, view) : NULL;
+    return *a != NULL;
 }

@@ -40,6 +40,7 @@ struct Session {
     AssetStore assets;
     SystemTable systems;
     CollisionWorld *collision;
+    LightManagerState *light_manager; // what is merged and dropped: advances with the ticks
     FileRoot root;
     char root_path[1024], level_path[1024]; // level_path is below the root
     LevelInfo level;
@@ -87,6 +88,10 @@ typedef struct SessionView {
 void session_frame_begin(Session *session); // resets the frame arena
 // Built in session->frame. NULL if there is no such camera (LOG USAGE lists those there are).
 const Packet *session_packet(Session *session, const SessionView *view);
+// Two packets of the same moment for a split picture: `a` as session_packet makes it, `b` of the
+// other settings but of a's resolution. False if there is no such camera.
+bool session_packet_split(Session *session, const SessionView *view, const RenderSettings *other,
+                          const Packet **a, const Packet **b);
 // The camera entity for a name (NULL = player), or ENTITY_NONE.
 Entity session_camera(const Session *session, const char *name);
 

@@ -24,8 +24,9 @@ extern int glfwCreateWindowSurface(void *vk_instance, GLFWwindow *window, const 
 #define FRAME_MS_MIN          3.0 // some systems do not throttle: 333 pictures a second are plenty
 #define STATUS_MS             1000.0
 #define RESIZE_RETRY_MS       20.0
-#define RESIZE_FAILURES_MAX   50 // then the device is made anew
-#define DEVICE_LOSSES_MAX     3  // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
+#define RESIZE_FAILURES_MAX   50    // then the device is made anew
+#define SPLIT_GRAB_SHARE      0.02f // so near to the line a free pointer drags it
+#define DEVICE_LOSSES_MAX     3     // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
 #define DEVICE_LOSS_WINDOW_MS 10000.0
 
 typedef struct Window {
@@ -36,7 +37,7 @@ typedef struct Window {
     ControlsDevice device;
     StepClock clock;
     ScaleControl scale;
-    bool ui_ready, must_resize, was_panel, quit;
+    bool ui_ready, must_resize, was_panel, drags_line, quit;
     u32 resize_failures, device_losses;
     f64 first_loss_ms;
     int restore_x, restore_y, restore_width, restore_height; // before full screen
@@ -103,10 +104,27 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     app_key(window->app, key);
 }
 
+// The pointer's place, 0..1 of the window's width.
+static f32 pointer_at(const Window *window) {
+    f64 x, y;
+    int width, height;
+    glfwGetCursorPos(window->handle, &x, &y);
+    glfwGetWindowSize(window->handle, &width, &height);
+    return width > 0 ? (f32)(x / width) : 0.0f;
+}
+
+static bool is_at_split_line(const Window *window) {
+    return window->app->split &&
+           fabsf(pointer_at(window) - window->app->split_view.at) < SPLIT_GRAB_SHARE;
+}
+
 static void on_mouse_button(GLFWwindow *handle, int button, int action, int mods) {
     (void)button, (void)mods;
     Window *window = window_of(handle);
-    if (action == GLFW_PRESS && !debug_ui_wants_mouse(window->ui)) capture_mouse(window, true);
+    window->drags_line = false;
+    if (action != GLFW_PRESS || debug_ui_wants_mouse(window->ui)) return;
+    window->drags_line = !window->device.captured && is_at_split_line(window);
+    if (!window->drags_line) capture_mouse(window, true);
 }
 
 static void on_focus(GLFWwindow *handle, int focused) {
@@ -254,9 +272,9 @@ static void simulate(Window *window) {
     app->ticks_ms = (f32)(clock_now_ms() - start);
 }
 
-static void grant_wishes(Window *window, const Packet *packet) {
+static void grant_wishes(Window *window, const Packet *packet, const Packet *other) {
     App *app = window->app;
-    if (app->want_screenshot) app_write_screenshot(app, packet);
+    if (app->want_screenshot) app_write_screenshot(app, packet, other);
     if (app->want_frame_file) app_write_frame_file(app, packet);
     app->want_screenshot = app->want_frame_file = false;
 }
@@ -268,7 +286,7 @@ static bool draw(Window *window) {
     if (!make_swapchain(window)) return false;
     u32 width, height;
     gpu_swapchain_size(gpu, &width, &height);
-    const Packet *packet = app_packet(app, width, height);
+    const Packet *other, *packet = app_packets(app, width, height, &other);
     if (!packet) return false;
     bool pointer = !window->device.captured;
     const Overlay *overlay =
@@ -278,12 +296,15 @@ static bool draw(Window *window) {
     if (!cmd) return false;
     bool shown = gpu_swapchain_acquire(gpu, cmd);
     window->wait_ms += clock_now_ms() - wait_start;
-    if (shown) renderer_draw(app->renderer, cmd, packet, true, overlay);
+    if (shown && other)
+        renderer_draw_split(app->renderer, cmd, packet, other, &app->split_view, true, overlay);
+    else if (shown)
+        renderer_draw(app->renderer, cmd, packet, true, overlay);
     if (!gpu_frame_end(gpu, false)) return false;
     wait_start = clock_now_ms();
     if (!shown || !gpu_swapchain_present(gpu)) window->must_resize = true;
     window->wait_ms += clock_now_ms() - wait_start;
-    grant_wishes(window, packet);
+    grant_wishes(window, packet, other);
     return shown;
 }
 
@@ -333,6 +354,7 @@ static void frame(Window *window) {
         return;
     }
     controls_device_poll(&window->device, window->handle, &window->controls);
+    if (window->drags_line) app->split_view.at = CLAMP(pointer_at(window), 0.0f, 1.0f);
     // An open panel wants a pointer; closing it goes back to walking.
     if (app->panel != window->was_panel) capture_mouse(window, !app->panel);
     window->was_panel = app->panel;

@@ -9,6 +9,7 @@ typedef struct Options {
     u32 number, size[2], shard[2];
     f64 real;
     ToolList list;
+    const char *pair[2];
 } Options;
 
 static ToolParse parse(Options *out, ToolCommon *common, ToolList *positional, int argc,
@@ -23,6 +24,7 @@ static ToolParse parse(Options *out, ToolCommon *common, ToolList *positional, i
         {"size", 0, OPTION_SIZE, &out->size, "WxH", "a size"},
         {"shard", 0, OPTION_SHARD, &out->shard, "I/N", "a shard"},
         {"set", 0, OPTION_LIST, &out->list, "K=V", "many"},
+        {"both", 0, OPTION_PAIR, &out->pair, "A B", "two"},
     };
     const ToolSpec spec = {.command = "test",
                            .synopsis = "A [B]",
@@ -61,6 +63,22 @@ TEST(tool_args, all_types) {
     assert_int_equal(common.threads, 2);
     assert_string_equal(common.device, "NV");
     assert_true(common.json && common.quiet && common.validation);
+}
+
+TEST(tool_args, two_values) {
+    Options o;
+    ToolCommon common;
+    ToolList positional;
+    assert_int_equal(PARSE("--both", "a=b", "c", "x"), PARSE_RUN);
+    assert_string_equal(o.pair[0], "a=b");
+    assert_string_equal(o.pair[1], "c");
+    assert_int_equal(positional.count, 1);
+    assert_int_equal(PARSE("x", "--both=a", "b", "--both", "c", "d"), PARSE_RUN);
+    assert_string_equal(o.pair[0], "c");
+    assert_string_equal(o.pair[1], "d");
+    assert_int_equal(PARSE("x", "--both", "a"), PARSE_ERROR);
+    assert_int_equal(PARSE("x", "--both=a"), PARSE_ERROR);
+    assert_int_equal(PARSE("x", "--both"), PARSE_ERROR);
 }
 
 TEST(tool_args, refuses) {
