@@ -95,6 +95,7 @@ TEST_GPU(golden, image_cloister_garden) {
     check_golden("data/levels/cloister.toml", "garden", 0, "cloister_garden");
 }
 TEST_GPU(golden, image_cornell) { check_golden("data/levels/cornell.toml", "main", 0, "cornell"); }
+TEST_GPU(golden, image_hall) { check_golden("data/levels/hall.toml", "main", 60, "hall"); }
 TEST_GPU(golden, image_light_box) {
     check_golden("data/levels/light_box.toml", "main", 30, "light_box");
 }
