@@ -134,7 +134,7 @@ bool bench_grid(Bench *bench, const char *id) {
 bool bench_packet(Bench *bench, const char *id) {
     Session session;
     if (!session_create(&session, tool_session())) return false;
-    bool ok = headless_load(&session, bench->level, &bench->common);
+    bool ok = headless_load(&session, bench_level(bench, BENCH_LEVEL), &bench->common);
     enum { TICK, WHOLE, CULL, LIGHTS, GRID, PACK, PARTS };
     static const char *const names[PARTS] = {"one tick",           "packet",
                                              "packet: culling",    "packet: lights",
@@ -174,12 +174,12 @@ bool bench_level_load(Bench *bench, const char *id) {
         Session session;
         if (!session_create(&session, tool_session())) return false;
         f64 start = clock_now_ms();
-        ok = session_load(&session, bench->level);
+        ok = session_load(&session, bench_level(bench, BENCH_LEVEL));
         samples_add(&samples, clock_now_ms() - start);
         if (!ok) diagnostics_print(session.diagnostics, stderr);
         session_destroy(&session);
     }
-    if (ok) bench_add(bench, id, bench->level, &samples, "ms", 0.0);
+    if (ok) bench_add(bench, id, bench_level(bench, BENCH_LEVEL), &samples, "ms", 0.0);
     samples_free(&samples);
     return ok;
 }

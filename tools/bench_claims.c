@@ -1,0 +1,100 @@
+// bench_claims.c: the row `claims`: the ratios that the engine promises, in one run.
+// Data in: the cloister and the hall. Data out: frame times, verdicts.
+// Does not: charts; the experiments have them.
+#include "../engine/capture/image_compare.h"
+#include "bench_frames.h"
+#include "bench_stages.h"
+#include <math.h>
+#include <stdio.h>
+
+#define WIDTH        1280
+#define HEIGHT       720
+#define LIGHTS       256
+#define SETTLE_TICKS 30
+
+static void name_variant(FrameVariant *variant, const char *scene) {
+    char word[48];
+    settings_word("path", variant->settings.path, word, sizeof word);
+    snprintf(variant->name, sizeof variant->name, "%s, %s", scene, word);
+}
+
+// Tiled against one pass a light and one pass for eight of them.
+static bool claim_paths(Bench *bench, const char *id, const char *scene, const char *level) {
+    static const RenderPath order[] = {PATH_TILED_DEFERRED, PATH_DEFERRED, PATH_MULTIPASS};
+    FrameBench run;
+    u32 width = bench->quick ? 320 : WIDTH, height = bench->quick ? 180 : HEIGHT;
+    if (!frame_bench_open(&run, bench, level, width, height, 1)) return false;
+    FrameVariant variants[COUNT_OF(order)] = {0};
+    for (u32 v = 0; v < COUNT_OF(order); v++) {
+        variants[v].settings = frame_bench_settings(&run, order[v], LIGHTS);
+        // The same lights for all.
+        frame_settings_every_light(&variants[v].settings);
+        name_variant(&variants[v], scene);
+    }
+    FrameRounds rounds = {3, 15, 45, 5000, 0};
+    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 1000, 0};
+    bool ok = frame_bench_measure(&run, variants, COUNT_OF(order), &rounds);
+    f64 base = frame_variant_ms(&variants[0]);
+    for (u32 v = 0; ok && v < COUNT_OF(order); v++)
+        frame_variant_add(bench, id, &variants[v], frame_variant_ms(&variants[v]) / base, true);
+    if (ok) {
+        bench_verdict(bench, id, frame_variant_ms(&variants[1]) / base, BENCH_AT_LEAST, 5.0, "x",
+                      "%s, %u lights, deferred / tiled_deferred", scene, LIGHTS);
+        bench_verdict(bench, id, frame_variant_ms(&variants[2]) / base, BENCH_AT_LEAST, 20.0, "x",
+                      "%s, %u lights, multipass / tiled_deferred", scene, LIGHTS);
+    }
+    frame_variants_free(variants, COUNT_OF(order));
+    frame_bench_close(&run);
+    return ok;
+}
+
+static bool claim_manager(Bench *bench, const char *id) {
+    FrameBench run;
+    u32 width = bench->quick ? 320 : WIDTH, height = bench->quick ? 180 : HEIGHT;
+    if (!frame_bench_open(&run, bench, bench_level(bench, BENCH_LEVEL), width, height, 1))
+        return false;
+    FrameVariant variants[2] = {{.name = "cloister, 1024 lights, manager on"},
+                                {.name = "cloister, 1024 lights, manager off"}};
+    for (u32 v = 0; v < 2; v++) {
+        variants[v].settings = settings_default();
+        variants[v].settings.path = PATH_TILED_DEFERRED;
+        variants[v].settings.light_limit = 1024;
+        variants[v].settings.manager = v == 0;
+    }
+    FrameRounds rounds = {5, 31, 40, 0, SETTLE_TICKS};
+    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 0, 3};
+    RenderImage on, off;
+    bool ok = frame_bench_measure(&run, variants, 2, &rounds) &&
+              frame_bench_picture(&run, &variants[0], SETTLE_TICKS, &bench->arena, &on) &&
+              frame_bench_picture(&run, &variants[1], 0, &bench->arena, &off);
+    if (ok) {
+        f64 ratio = frame_variant_ms(&variants[1]) / frame_variant_ms(&variants[0]);
+        ImageDifference difference =
+            image_compare(off.rgba, on.rgba, on.width_px, on.height_px, &bench->arena);
+        frame_variant_add(bench, id, &variants[0], 1.0, true);
+        frame_variant_add(bench, id, &variants[1], ratio, true);
+        bench_verdict(bench, id, ratio, BENCH_AT_LEAST, 1.5, "x",
+                      "cloister, 1024 lights, manager off / on");
+        bench_verdict(bench, id, difference.ssim, BENCH_AT_LEAST, 0.98, "",
+                      "cloister, 1024 lights, SSIM of the manager's picture");
+    }
+    frame_variants_free(variants, 2);
+    frame_bench_close(&run);
+    return ok;
+}
+
+bool bench_claims(Bench *bench, const char *id) {
+    // Nothing else prints these.
+    bench->in_experiment = false;
+    if (bench->level ? !claim_paths(bench, id, "level", bench->level)
+                     : !claim_paths(bench, id, "hall", BENCH_LEVEL_HALL) ||
+                           !claim_paths(bench, id, "cloister", BENCH_LEVEL))
+        return false;
+    ManagerCost cost;
+    if (!claim_manager(bench, id) || !bench_measure_manager(bench, id, &cost)) return false;
+    bench_verdict(bench, id, cost.lists_ms[0], BENCH_AT_MOST, 1.0, " ms",
+                  "lists of 1,000 lights, one core");
+    bench_verdict(bench, id, cost.lists_ms[1], BENCH_AT_MOST, 10.0, " ms",
+                  "lists of 10,000 lights, one core");
+    return true;
+}

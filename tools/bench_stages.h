@@ -1,0 +1,12 @@
+// bench_stages.h: the light manager measured on one core, for the rows `manager` and `claims`.
+#ifndef LUZ_TOOL_BENCH_STAGES_H
+#define LUZ_TOOL_BENCH_STAGES_H
+#include "bench.h"
+
+// Medians in ms on one core; [0] = 1,000 lights, [1] = 10,000 lights.
+typedef struct ManagerCost {
+    f64 lights_ms[2]; // light manager, all stages
+    f64 lists_ms[2];  // light lists of every light in view, tiles of 16 px by rectangles
+} ManagerCost;
+bool bench_measure_manager(Bench *bench, const char *id, ManagerCost *cost);
+#endif
