@@ -1,10 +1,7 @@
 // cells.glsl: which lights a pixel has: its cell of the light grid (tile or cluster), the cell's
 // list, and the sum of that list's lights.
 //
-// Needs in the shader that includes it, before anything else:
-//   #extension GL_KHR_shader_subgroup_basic : require
-//   #extension GL_KHR_shader_subgroup_ballot : require
-//   #extension GL_KHR_shader_subgroup_arithmetic : require
+// Needs subgroups.glsl, included before anything else.
 // Lists come from the packet or from buffers that the device filled (DEVICE_LISTS). CLUSTERED 0: a
 // cell is a tile; 1: a tile and a slice of depth; 2: the pixel says which (PIXEL_CLUSTERS).
 // Light indices are made uniform over the subgroup: then lights are scalar reads.
@@ -33,6 +30,7 @@ layout(std430, set = 0, binding = BINDING_PIXEL_CLUSTERS) LIST_ACCESS buffer Pix
 // Which sample of a multisampled pixel PIXEL_CLUSTERS is asked for: one that the fragment covers
 // (findLSB(gl_SampleMaskIn[0])).
 uint cell_sample = 0u;
+const uint CELL_SAMPLES = SAMPLES > 1u ? SAMPLES : 1u;
 
 // Slice of depth, see FrameRecord.slices.
 uint cell_slice(float view_depth) {
@@ -43,7 +41,7 @@ uint cell_slice(float view_depth) {
 // The cell of a pixel at a view depth in m.
 uint cell_of(uvec2 pixel, float view_depth) {
     if (CLUSTERED == 2u)
-        return pixel_clusters[(pixel.y * uint(frame.viewport.x) + pixel.x) * SAMPLES + cell_sample];
+        return pixel_clusters[(pixel.y * uint(frame.viewport.x) + pixel.x) * CELL_SAMPLES + cell_sample];
     uvec2 tile = pixel >> TILE_SHIFT;
     uint cell = tile.y * frame.grid.x + tile.x;
     if (CLUSTERED == 1u) cell += cell_slice(view_depth) * frame.grid.x * frame.grid.y;
@@ -63,7 +61,7 @@ uvec4 cell_classes(uvec4 list) {
     return uvec4(points - (list.w & 0xFFFFu), points, all - (list.w >> 16u), all);
 }
 
-// The list of all lights: an entry is its own place.
+// The list of all lights, whose entries are their own places.
 uvec4 cell_list_all() {
     uvec2 diffuse = flow.counts.xy - flow.counts3.xy;
     diffuse = mix(diffuse, uvec2(0u), greaterThan(diffuse, uvec2(0xFFFFu)));
@@ -73,27 +71,34 @@ uvec4 cell_list_all() {
 // The software driver stops an invocation after 65,535 iterations of loops.
 const uint CELL_ITERATIONS_SAFE = 60000u;
 
+// Light at a place of a list, or (all) of the list of all lights; uniform over the subgroup. Lists
+// made on the device have that list in their own order (CLUSTER_ALL).
+uint cell_light_index(uint at, bool all) {
+    uint index = cell_index(subgroupBroadcastFirst(at));
+    return subgroupBroadcastFirst(all && DEVICE_LISTS == 0u ? at : index);
+}
+
 vec3 cell_light_list(Surface s, uvec4 list, bool all) {
     vec3 sum = vec3(0.0);
     uvec4 ends = cell_classes(list);
     uint point_count = flow.counts.x;
     uint at = list.x;
     for (; at < ends.x; at++) {
-        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        uint index = cell_light_index(at, all);
         sum += light_point(s, light_position(index), light_color(index));
     }
     for (; at < ends.y; at++) {
-        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        uint index = cell_light_index(at, all);
         sum += light_point_diffuse(s, light_position(index), light_color(index));
     }
     if (SPOTS == 0u) return sum;
     for (; at < ends.z; at++) {
-        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        uint index = cell_light_index(at, all);
         sum += light_spot(s, light_position(index), light_color(index),
                           spot_direction(index - point_count), spot_edge(index - point_count));
     }
     for (; at < ends.w; at++) {
-        uint index = subgroupBroadcastFirst(all ? at : cell_index(subgroupBroadcastFirst(at)));
+        uint index = cell_light_index(at, all);
         sum += light_spot_diffuse(s, light_position(index), light_color(index),
                                   spot_direction(index - point_count),
                                   spot_edge(index - point_count));
@@ -116,8 +121,12 @@ vec3 cell_light(Surface s, uint cell) {
             total += lights;
             if (turn == cell) break;
         }
+        // The lane whose turn came last has added them all.
         all = subgroupMax(total) > CELL_ITERATIONS_SAFE;
-        if (all) list = cell_list_all(), cell = 0u;
+        if (all) {
+            cell = CLUSTER_ALL;
+            list = CLUSTERED == 2u ? cell_list(cell) : cell_list_all();
+        }
     }
     vec3 sum = vec3(0.0);
     for (;;) {

@@ -1,9 +1,13 @@
 #version 460
 // debug.frag: what lies in the G-buffer and the tile lists, as a picture.
 #extension GL_GOOGLE_include_directive : require
+#include "subgroups.glsl"
 #include "gbuffer.glsl"
+#include "cells.glsl"
 
-layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
+layout(std430, set = 0, binding = BINDING_TILE_DEPTHS) readonly buffer TileDepthBuffer {
+    TileDepthRecord tile_depths[];
+};
 layout(location = 0) out vec4 out_color;
 
 // Blue, cyan, green, yellow, red, white for 0..1.
@@ -36,7 +40,7 @@ uint material_key(GbufferPixel g) {
 // in stripes, light by Reinhard.
 vec3 target_color(vec3 t) { return srgb_encode(t); }
 vec3 target_signed(vec3 t) { return t * 0.5 + 0.5; }
-vec3 target_metres(vec3 t) { return fract(t * 0.25); }
+vec3 target_metres(vec3 t) { return fract(t * 0.25 + 0.01); } // floors at 0 m do not flicker
 vec3 target_light(vec3 t) { return srgb_encode(t / (1.0 + t)); }
 vec3 target_power(float t) { return vec3(log2(max(t, 1.0)) / 11.0); }
 
@@ -72,6 +76,31 @@ vec3 target_visible(uint index, ivec2 pixel) {
     return t.rgb; // bytes
 }
 
+vec3 hashed(uint key) {
+    uint h = (key + 1u) * 2654435761u;
+    h = (h ^ (h >> 15u)) * 2246822519u;
+    return vec3(uvec3(h >> 8u, h >> 16u, h >> 24u) & 255u) / 255.0;
+}
+
+// Lights of the pixel's tile or cluster, as it is shaded.
+vec3 view_cell_lights(uint cell) {
+    uvec4 list = cell_list(cell);
+    return list.y + list.z == 0u ? vec3(0.0) : heat(log2(float(list.y + list.z)) / 8.0);
+}
+// A tile's nearest depth upper left of the diagonal, its farthest lower right, and along the lower
+// rim which of the 32 slices between them are occupied.
+vec3 view_tile_depth(uvec2 pixel) {
+    uvec2 tile = pixel >> TILE_SHIFT, inside = pixel & ((1u << TILE_SHIFT) - 1u);
+    TileDepthRecord seen = tile_depths[tile.y * frame.grid.x + tile.x];
+    if (seen.range.x > seen.range.y) return vec3(0.0, 0.0, 0.15); // background only
+    uint side = 1u << TILE_SHIFT;
+    if (side >= 16u && inside.y + 2u >= side)
+        return (seen.mask.x & 1u << (inside.x * 32u >> TILE_SHIFT)) != 0u ? vec3(1.0, 0.8, 0.2)
+                                                                         : vec3(0.1);
+    float depth = inside.x + inside.y < side ? seen.range.x : seen.range.y;
+    return vec3(1.0 / (1.0 + 0.15 * depth));
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     GbufferPixel g = gbuffer_read(pixel);
@@ -85,7 +114,7 @@ void main() {
         uint h = (material_key(g) + 1u) * 2654435761u;
         color = vec3(uvec3(h >> 8u, h >> 16u, h >> 24u) & 255u) / 255.0;
     }
-    if (DEBUG_VIEW == DEBUG_POSITION) color = fract(g.position * 0.25);
+    if (DEBUG_VIEW == DEBUG_POSITION) color = target_metres(g.position);
     if (DEBUG_VIEW == DEBUG_EMISSIVE) {
         vec3 e = emission_of(g);
         color = srgb_encode(e / (1.0 + e));
@@ -100,10 +129,10 @@ void main() {
     if (DEBUG_VIEW >= DEBUG_GBUFFER_0 && DEBUG_VIEW < DEBUG_GBUFFER_0 + 5)
         color = target_visible(DEBUG_VIEW - DEBUG_GBUFFER_0, pixel);
     if (g.depth <= 0.0) color = vec3(0.0);
-    if (DEBUG_VIEW == 14u) {
-        uvec2 tile = uvec2(gl_FragCoord.xy) >> TILE_SHIFT;
-        uvec4 list = cells[tile.y * frame.grid.x + tile.x].list;
-        color = list.y + list.z == 0u ? vec3(0.0) : heat(log2(float(list.y + list.z)) / 8.0);
+    if (DEBUG_VIEW == DEBUG_TILE_DEPTH) color = view_tile_depth(uvec2(pixel));
+    if (DEBUG_VIEW == DEBUG_CELL_LIGHTS || DEBUG_VIEW == DEBUG_CLUSTERS) {
+        uint cell = cell_of(uvec2(pixel), frame.camera.w / max(g.depth, 1e-9));
+        color = DEBUG_VIEW == DEBUG_CLUSTERS ? hashed(cell) : view_cell_lights(cell);
         float shade = 0.35 + 0.65 * dot(g.albedo, vec3(0.3, 0.6, 0.1));
         color *= g.depth > 0.0 ? shade : 0.35;
         uvec2 inside = uvec2(gl_FragCoord.xy) & ((1u << TILE_SHIFT) - 1u);

@@ -73,6 +73,14 @@ float specular_power(float cosine, float length2, float power) {
     return exp2(power * 1.442695 * ((c2 - length2) / (c2 + length2)));
 }
 
+// The diffuse lobe alone.
+vec3 brdf_diffuse(Surface s, vec3 l, float n_dot_l) {
+    if ((BRDF_MASK & BRDF_MASK_OREN_NAYAR) == 0u) return s.diffuse;
+    float c = dot(l, s.view) - n_dot_l * s.n_dot_v;
+    float t = c > 0.0 ? max(n_dot_l, s.n_dot_v) : 1.0;
+    return s.diffuse * (s.lobes.z + s.lobes.w * c / max(t, 1e-4));
+}
+
 // Reflected radiance for unit irradiance times n.l, of light from unit direction l. highlight: the
 // light's factor on the specular lobe.
 vec3 brdf(Surface s, vec3 l, float n_dot_l, float highlight) {
@@ -94,14 +102,9 @@ vec3 brdf(Surface s, vec3 l, float n_dot_l, float highlight) {
         float f = x2 * x2 * x * s.fresnel;
         specular += (vec3(s.lobes.y) - specular) * f;
     }
-    float diffuse = 1.0;
-    if ((BRDF_MASK & BRDF_MASK_OREN_NAYAR) != 0u) {
-        float c = dot(l, s.view) - n_dot_l * s.n_dot_v;
-        float t = c > 0.0 ? max(n_dot_l, s.n_dot_v) : 1.0;
-        diffuse = s.lobes.z + s.lobes.w * c / max(t, 1e-4);
-    }
-    if ((BRDF_MASK & 14u) == 0u) return s.diffuse * diffuse; // no specular lobe in this level
-    return s.diffuse * diffuse + specular * (highlight * specular_power(cosine, length2, s.power));
+    vec3 diffuse = brdf_diffuse(s, l, n_dot_l);
+    if ((BRDF_MASK & 14u) == 0u) return diffuse; // no specular lobe in this level
+    return diffuse + specular * (highlight * specular_power(cosine, length2, s.power));
 }
 
 // Falloff from the table (what it holds: render/lookups.c), filtered linearly; its first and last
@@ -151,6 +154,27 @@ vec3 light_spot(Surface s, vec4 position, vec4 color, vec4 direction, float edge
     float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
     float cone = t * t * (3.0 - 2.0 * t);
     return color.rgb * brdf(s, l, n_dot_l, color.w) *
+           (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
+}
+
+// The same lights without a highlight, for those whose color.w is 0: the same bits, cheaper.
+vec3 light_point_diffuse(Surface s, vec4 position, vec4 color) {
+    vec3 l = position.xyz - s.position;
+    float d2 = max(dot(l, l), 1e-8);
+    float inv_d = inversesqrt(d2);
+    l *= inv_d;
+    float n_dot_l = max(dot(s.normal, l), 0.0);
+    return color.rgb * brdf_diffuse(s, l, n_dot_l) * (attenuation(d2, inv_d, position.w) * n_dot_l);
+}
+vec3 light_spot_diffuse(Surface s, vec4 position, vec4 color, vec4 direction, float edge) {
+    vec3 l = position.xyz - s.position;
+    float d2 = max(dot(l, l), 1e-8);
+    float inv_d = inversesqrt(d2);
+    l *= inv_d;
+    float n_dot_l = max(dot(s.normal, l), 0.0);
+    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
+    float cone = t * t * (3.0 - 2.0 * t);
+    return color.rgb * brdf_diffuse(s, l, n_dot_l) *
            (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
 }
 

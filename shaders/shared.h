@@ -125,6 +125,13 @@ typedef struct MeshVertex {
 #define DEBUG_SPECULAR  7
 #define DEBUG_MOTION    8
 #define DEBUG_GBUFFER_0 9 // to 13
+#define DEBUG_CELL_LIGHTS 14
+#define DEBUG_TILE_DEPTH  15
+#define DEBUG_CLUSTERS    16
+
+// SPEC_POST of copy.frag: what is copied.
+#define COPY_HDR 0
+#define COPY_LDR 1
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
@@ -150,6 +157,13 @@ typedef struct MeshVertex {
 #define GRID_NODE_WIDTH        8 // children of a node of the light hierarchy
 #define CLUSTER_SLICES_CAP     256
 
+// Places in CLUSTERS and, for clusters made on the device, in LIST_CELLS.
+#define CLUSTER_EMPTY          0 // of background pixels: no lights
+#define CLUSTER_ALL            1 // of those that found no room: all lights
+#define CLUSTER_FIRST          2 // the first occupied one
+// Key of an occupied cluster: tile << 11 | direction of the normal (0..5, see cluster_keys.glsl)
+// << 8 | slice.
+#define CLUSTER_TILE_SHIFT     11
 SHARED_STRUCT(FrameRecord) {
     mat4 view_projection; // world to clip, reversed depth, infinite far
     mat4 view;            // world to view
@@ -226,6 +240,8 @@ SHARED_STRUCT(TileDepthRecord) {
 } SHARED_END(TileDepthRecord)
 
 // Hierarchy over lights in Morton order (systems/light_hierarchy.c): GRID_NODE_WIDTH children a
+                     // (by any sample); of clusters: z how many are in the tile, w the first's place
+                     // (CLUSTER_ALL: they found no room)
 // node, leaves are lights. The points' root is node 0, the spots' the node counts3.z says.
 SHARED_STRUCT(GridNode) {
     vec4 low;        // view-space box; w: bits of the first child (node, or index into the order)

@@ -1,32 +1,25 @@
 #version 460
 // tiled.comp: path `tiled_deferred`: the G-buffer is read once, then the lights of the pixel's tile.
 //
-// A tile's list is made on the CPU from screen rectangles, so it holds lights in front of and
-// behind the surface. A subgroup therefore culls it again for the pixels it is about to shade:
+// A tile's list holds lights in front of and behind the surface (also after its depths narrowed it:
+// a tile is up to 64 pixels wide). A subgroup therefore culls it again for the pixels it is about to
+// shade:
 // their positions span a box; every lane tests one light against the box; survivors are compacted,
 // in order, into shared memory. The sum has the same terms in the same order as without culling, so
 // the bits are the same.
 //
 // A group is 8x8 pixels; an invocation shades PIXELS_PER_LANE of them in turn, so that one cull
-// serves 64 pixels where subgroups are small (software driver: 8 lanes). In the light loop a
-// survivor's index is made uniform by a shuffle: a uniform block read at a uniform address is a
-// scalar load there, a quarter of the price of shuffling the light's eight floats.
+// serves 64 pixels where subgroups are small (software driver: 8 lanes). Every tile is at least 8
+// pixels wide: a group has one list.
 // If a list of survivors overflows SURVIVORS_CAP, the whole tile's list is shaded: no light is lost.
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_vote : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "subgroups.glsl"
 #include "gbuffer.glsl"
+#include "cells.glsl"
 
 layout(constant_id = SPEC_PIXELS_PER_LANE) const uint PIXELS_PER_LANE = 1;
 layout(local_size_x_id = SPEC_TILED_GROUP) in; // 64 / PIXELS_PER_LANE
 
-layout(std430, set = 0, binding = BINDING_CELLS) readonly buffer CellBuffer { CellRecord cells[]; };
-layout(std430, set = 0, binding = BINDING_LIGHT_INDICES) readonly buffer IndexBuffer {
-    uint light_indices[];
-};
 layout(set = 0, binding = BINDING_HDR_STORAGE, rgba16f) writeonly uniform image2D hdr;
 
 // A list for each subgroup; they have 4 lanes at least.
@@ -43,7 +36,7 @@ ivec2 pixel_of(uint round) {
 uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uint count) {
     for (uint b = first; b < last; b += gl_SubgroupSize) {
         uint k = b + gl_SubgroupInvocationID;
-        uint index = light_indices[min(k, last - 1u)];
+        uint index = cell_index(min(k, last - 1u));
         vec4 position = light_position(index);
         vec3 outside =
             max(box_min - position.xyz, vec3(0.0)) + max(position.xyz - box_max, vec3(0.0));
@@ -56,85 +49,51 @@ uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uin
     return count;
 }
 
-// Entries [first, last) of the survivors, or of the tile's own list.
-uint list_entry(bool from_tile, uint at) { return from_tile ? light_indices[at] : survivors[at]; }
-
-vec3 shade_points(Surface s, bool from_tile, uint first, uint last) {
-    vec3 sum = vec3(0.0);
-    for (uint b = first; b < last; b += gl_SubgroupSize) {
-        uint mine = list_entry(from_tile, min(b + gl_SubgroupInvocationID, last - 1u));
-        uint end = min(gl_SubgroupSize, last - b);
-        if (LIGHT_BLOCKS != 0u) {
-            for (uint j = 0u; j < end; j++) {
-                uint index = subgroupShuffle(mine, j);
-                sum += light_point(s, light_position(index), light_color(index));
-            }
-        } else {
-            vec4 position = light_position(mine), color = light_color(mine);
-            for (uint j = 0u; j < end; j++)
-                sum += light_point(s, subgroupShuffle(position, j), subgroupShuffle(color, j));
-        }
-    }
-    return sum;
-}
-
-vec3 shade_spots(Surface s, bool from_tile, uint first, uint last, uint point_count) {
-    vec3 sum = vec3(0.0);
-    for (uint b = first; b < last; b += gl_SubgroupSize) {
-        uint mine = list_entry(from_tile, min(b + gl_SubgroupInvocationID, last - 1u));
-        uint end = min(gl_SubgroupSize, last - b);
-        for (uint j = 0u; j < end; j++) {
-            uint index = subgroupShuffle(mine, j);
-            sum += light_spot(s, light_position(index), light_color(index),
-                              spot_direction(index - point_count), spot_edge(index - point_count));
-        }
-    }
-    return sum;
-}
+// Entries of the survivors, or of the tile's own list.
+uint list_entry(bool from_tile, uint at) { return from_tile ? cell_index(at) : survivors[at]; }
+#include "list_shade.glsl"
 
 void main() {
     ivec2 size = ivec2(frame.viewport.xy);
     uvec2 tile = gl_WorkGroupID.xy >> (TILE_SHIFT - 3u);
-    uvec4 list = cells[tile.y * flow.grid.x + tile.x].list;
-    uint point_count = flow.counts.x;
+    uvec4 list = cell_list(tile.y * flow.grid.x + tile.x), list_ends = cell_classes(list);
 
     vec3 lane_min = vec3(1e30), lane_max = vec3(-1e30);
     for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
-        ivec2 pixel = min(pixel_of(round), size - 1);
-        float depth = texelFetch(gbuffer_depth, pixel, 0).x;
-        vec3 position = position_from_depth(vec2(pixel) + 0.5, depth);
-        lane_min = min(lane_min, depth > 0.0 ? position : vec3(1e30));
-        lane_max = max(lane_max, depth > 0.0 ? position : vec3(-1e30));
+        // Only what the position needs is read: the compiler drops the rest.
+        GbufferPixel g = gbuffer_read(min(pixel_of(round), size - 1));
+        lane_min = min(lane_min, g.depth > 0.0 ? g.position : vec3(1e30));
+        lane_max = max(lane_max, g.depth > 0.0 ? g.position : vec3(-1e30));
     }
     vec3 box_min = subgroupMin(lane_min), box_max = subgroupMax(lane_max);
 
     // Empty loops where only sky is seen, or where nothing is to be culled: a branch would not save
     // the work on the software driver.
     uint list_base = gl_SubgroupID * SURVIVORS_CAP;
-    bool any_lit = box_min.x <= box_max.x, cull_list = any_lit && SUBGROUP_CULL != 0u;
-    uint points = 0u, all = 0u;
+    bool any_lit = box_min.x <= box_max.x;
+    uvec4 counts = uvec4(0u); // survivors up to the end of each class
     if (SUBGROUP_CULL != 0u) {
-        points = cull(list.x, cull_list ? list.x + list.y : list.x, box_min, box_max, list_base, 0u);
-        all = points;
-        if (SPOTS != 0u)
-            all = cull(list.x + list.y, cull_list ? list.x + list.y + list.z : 0u, box_min, box_max,
-                       list_base, points);
+        uvec4 ends = any_lit ? list_ends : uvec4(0u);
+        counts.x = cull(list.x, ends.x, box_min, box_max, list_base, 0u);
+        counts.y = cull(list_ends.x, ends.y, box_min, box_max, list_base, counts.x);
+        counts.zw = counts.yy;
+        if (SPOTS != 0u) {
+            counts.z = cull(list_ends.y, ends.z, box_min, box_max, list_base, counts.y);
+            counts.w = cull(list_ends.z, ends.w, box_min, box_max, list_base, counts.z);
+        }
         subgroupMemoryBarrierShared();
         subgroupBarrier();
     }
-    bool from_tile = SUBGROUP_CULL == 0u || all > SURVIVORS_CAP;
+    bool from_tile = SUBGROUP_CULL == 0u || counts.w > SURVIVORS_CAP;
     uint first = from_tile ? list.x : list_base;
-    uint middle = first + (from_tile ? list.y : points);
-    uint last = middle + (from_tile ? list.z : all - points);
+    uvec4 ends = from_tile ? list_ends : list_base + counts;
+    if (!any_lit) ends = uvec4(first);
 
     for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
         ivec2 pixel = pixel_of(round);
-        ivec2 clamped = min(pixel, size - 1);
-        GbufferPixel g = gbuffer_read(clamped);
+        GbufferPixel g = gbuffer_read(min(pixel, size - 1));
         Surface s = gbuffer_surface(g);
-        vec3 sum = shade_points(s, from_tile, any_lit ? first : middle, middle);
-        if (SPOTS != 0u) sum += shade_spots(s, from_tile, any_lit ? middle : last, last, point_count);
-        vec3 radiance = gbuffer_radiance(g, s, sum);
+        vec3 radiance = gbuffer_radiance(g, s, shade_list(s, from_tile, first, ends));
         if (pixel.x < size.x && pixel.y < size.y)
             imageStore(hdr, pixel, vec4(g.depth > 0.0 ? radiance : vec3(0.0), 1.0));
     }

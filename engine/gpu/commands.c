@@ -185,6 +185,17 @@ void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuf
         cmd->buffer, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &region);
 }
 
+void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuBuffer to,
+                         u64 to_offset, u64 size) {
+    const GpuBufferItem *source = gpu_buffer_get(cmd->gpu, from);
+    const GpuBufferItem *target = gpu_buffer_get(cmd->gpu, to);
+    LUZ_ASSERT(from_offset <= source->size && size <= source->size - from_offset);
+    LUZ_ASSERT(to_offset <= target->size && size <= target->size - to_offset);
+    VkBufferCopy region = {gpu_buffer_offset(cmd->gpu, source) + from_offset,
+                           gpu_buffer_offset(cmd->gpu, target) + to_offset, size};
+    cmd->gpu->vk.vkCmdCopyBuffer(cmd->buffer, source->buffer, target->buffer, 1, &region);
+}
+
 // --- Labels ---
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name) {

@@ -320,6 +320,9 @@ void gpu_cmd_dispatch(GpuCommands *cmd, u32 x, u32 y, u32 z);
 void gpu_cmd_dispatch_indirect(GpuCommands *cmd, GpuBuffer buffer, u64 offset);
 // Mip 0, tightly packed; texture in GPU_USAGE_COPY_SOURCE.
 void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuffer buffer);
+// The source in GPU_USAGE_COPY_SOURCE; ranges must lie within the buffers.
+void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuBuffer to,
+                         u64 to_offset, u64 size);
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_label_end(GpuCommands *cmd);

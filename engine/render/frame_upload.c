@@ -214,3 +214,4 @@ void frame_upload_destroy(Renderer *renderer) {
     if (renderer->readback.id) gpu_destroy_buffer(gpu, renderer->readback);
     lookups_destroy(renderer);
 }
+    device_lists_destroy(renderer);

@@ -34,3 +34,18 @@ extern const Pass deferred_pass, resolve_pass, tiled_pass;
 extern const Pass tonemap_pass, debug_pass;
 
 #endif
+// passes_lists.c: lists of the path's cells, between the depth buffer and whoever shades; passes
+// that the settings do not ask for are passed over.
+extern const Pass tile_depth_pass, list_refine_pass, list_count_pass, list_scan_pass,
+    list_fill_pass, list_report_pass;
+extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, cluster_count_pass,
+    cluster_list_scan_pass, cluster_fill_pass, clustered_pass;
+#define TILE_LIST_PASSES                                                                           \
+    &tile_depth_pass, &list_refine_pass, &list_count_pass, &list_scan_pass, &list_fill_pass,       \
+        &list_report_pass
+#define CLUSTER_LIST_PASSES                                                                        \
+    &cluster_keys_pass, &cluster_scan_pass, &cluster_places_pass, &cluster_count_pass,             \
+        &cluster_list_scan_pass, &cluster_fill_pass, &list_report_pass
+// What a pass reads that shades by lists: USE_LISTS(READ_VERTEX) or USE_LISTS(STORAGE_READ_COMPUTE).
+#define USE_LISTS(use_)                                                                            \
+    USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_)

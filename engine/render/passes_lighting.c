@@ -51,7 +51,8 @@ static void tiled_record(const PassContext *c) {
 }
 const Pass tiled_pass = {"lighting",
                          {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
-                          USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE)},
-                         8,
+                          USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE),
+                          USE_LISTS(STORAGE_READ_COMPUTE)},
+                         11,
                          tiled_record,
                          NULL};

@@ -23,6 +23,18 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
      SPEC_BIT(SPEC_EXACT_POWER) | SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_PALETTE)
 // What a pass needs to read the G-buffer.
 #define SPEC_READ_GBUFFER (SPEC_BIT(SPEC_LAYOUT) | SPEC_BIT(SPEC_NORMAL_LOOKUP) | SPEC_PALETTE)
+// What a pass needs that makes light lists.
+#define SPEC_MAKE_LISTS                                                                            \
+    (SPEC_BIT(SPEC_SPOTS) | SPEC_BIT(SPEC_LIGHT_BLOCKS) | SPEC_BIT(SPEC_TILE_SHIFT) |              \
+     SPEC_BIT(SPEC_TILE_DEPTH) | SPEC_BIT(SPEC_CLUSTERED) | SPEC_BIT(SPEC_CLUSTER_NORMALS) |       \
+     SPEC_BIT(SPEC_SAMPLES))
+// What a pass needs that shades by lists.
+#define SPEC_SHADE_LISTS                                                                           \
+    (SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_CLUSTERED))
+// What a pass needs to read lights by lists.
+#define SPEC_LISTS                                                                                 \
+    (SPEC_BIT(SPEC_CELL_LISTS) | SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_CLUSTERED) |            \
+     SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_SAMPLES) | SPEC_BIT(SPEC_VERTEX_LIGHTING))
 #define SPEC_ONE_LIGHT                                                                             \
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER) |          \
      SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_READ_GBUFFER)
@@ -120,7 +132,7 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                    .cull = GPU_CULL_NONE},
     [PIPELINE_TILED] = {.label = "tiled",
                         .compute = "tiled.comp",
-                        .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_BIT(SPEC_TILE_SHIFT) |
+                        .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS |
                                      SPEC_BIT(SPEC_SUBGROUP_CULL) | SPEC_BIT(SPEC_PIXELS_PER_LANE) |
                                      SPEC_BIT(SPEC_TILED_GROUP)},
     [PIPELINE_SKY] = {.label = "sky",
@@ -155,8 +167,8 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                         .targets = {RESOURCE_LDR},
                         .target_count = 1,
                         .cull = GPU_CULL_NONE,
-                        .spec_mask = SPEC_BIT(SPEC_DEBUG_VIEW) | SPEC_BIT(SPEC_TILE_SHIFT) |
-                                     SPEC_READ_GBUFFER},
+                        .spec_mask =
+                            SPEC_BIT(SPEC_DEBUG_VIEW) | SPEC_SHADE_LISTS | SPEC_READ_GBUFFER},
     [PIPELINE_TEXT] = {.label = "text",
                        .vertex = "overlay.vert",
                        .fragment = "overlay.frag",
@@ -189,6 +201,45 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .layouts = {renderer->frame_layout, renderer->material_layout},
         .layout_count = 2,
         .push_size = PUSH_SIZE,
+    [PIPELINE_CLUSTERED] = {.label = "clustered",
+                            .compute = "clustered.comp",
+                            .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS},
+    [PIPELINE_TILE_DEPTH] = {.label = "tile depth",
+                             .compute = "tile_depth.comp",
+                             .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT)},
+    [PIPELINE_TILE_DEPTH_MS] = {.label = "tile depth of samples",
+                                .compute = "tile_depth_ms.comp",
+                                .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_SAMPLES)},
+    [PIPELINE_LIST_REFINE] = {.label = "list refine",
+                              .compute = "list_refine.comp",
+                              .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_COUNT] = {.label = "list count",
+                             .compute = "list_count.comp",
+                             .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_SCAN] = {.label = "list scan",
+                            .compute = "list_scan.comp",
+                            .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_FILL] = {.label = "list fill",
+                            .compute = "list_fill.comp",
+                            .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_KEYS] = {.label = "cluster keys",
+                               .compute = "cluster_keys.comp",
+                               .spec_mask = SPEC_MAKE_LISTS | SPEC_READ_GBUFFER},
+    [PIPELINE_CLUSTER_KEYS_MS] = {.label = "cluster keys of samples",
+                                  .compute = "cluster_keys_ms.comp",
+                                  .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_SCAN] = {.label = "cluster scan",
+                               .compute = "cluster_scan.comp",
+                               .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_PLACES] = {.label = "cluster places",
+                                 .compute = "cluster_places.comp",
+                                 .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_COUNT] = {.label = "cluster count",
+                                .compute = "cluster_count.comp",
+                                .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_FILL] = {.label = "cluster fill",
+                               .compute = "cluster_fill.comp",
+                               .spec_mask = SPEC_MAKE_LISTS},
         .spec_count = SPEC_COUNT,
         .target_count = row->to_swapchain ? 1 : row->target_count,
         .depth_format = row->has_depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,
@@ -217,8 +268,10 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
 
 static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
     u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
-    while (pixels > 1 && (u64)packet->counts.cell_light_max * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE)
-        pixels /= 2;
+    // How long lists made on the device are is not known here: at most all lights.
+    u64 longest =
+        device_lists_used(&packet->settings) ? packet->lights.count : packet->counts.cell_light_max;
+    while (pixels > 1 && longest * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE) pixels /= 2;
     return pixels;
 }
 
@@ -242,12 +295,15 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_CLUSTERED] = !settings_clustered(settings)        ? 0
                            : settings->clusters == CLUSTERS_CPU ? 1
                                                                 : 2,
-        [SPEC_TILE_DEPTH] = settings->tile_depth,
+        [SPEC_TILE_DEPTH] = settings_tiled(settings) ? settings->tile_depth : 0,
+        [SPEC_DEVICE_LISTS] = device_lists_used(settings),
         [SPEC_ATTENUATION_LOOKUP] = settings->attenuation_lookup,
         [SPEC_NORMAL_LOOKUP] = settings->normal_lookup,
         [SPEC_PALETTE_TEXTURE] = settings->palette == PALETTE_TEXTURE,
         [SPEC_LIGHT_BRANCH] = settings->light_branch,
-        [SPEC_CLUSTER_NORMALS] = settings->cluster_normals,
+        // Forward paths have no normals before they shade.
+        [SPEC_CLUSTER_NORMALS] =
+            settings->cluster_normals && settings->path == PATH_CLUSTERED_DEFERRED,
         [SPEC_CELL_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
         [SPEC_TONEMAP] = settings->tonemap,
         [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
@@ -280,3 +336,8 @@ void pipelines_destroy(Renderer *renderer) {
             gpu_destroy_pipeline(renderer->gpu, renderer->pipelines[i].pipeline);
     renderer->pipeline_count = 0;
 }
+    if (kind == PIPELINE_FORWARD_BLEND) {
+        // Blended surfaces lie before those that the device made its lists for.
+        spec[SPEC_DEVICE_LISTS] = 0;
+        spec[SPEC_CLUSTERED] = MIN(spec[SPEC_CLUSTERED], 1);
+    }

@@ -107,8 +107,9 @@ static void debug_record(const PassContext *c) {
 }
 const Pass debug_pass = {
     "debug view",
-    {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT)},
-    7,
+    {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
+     USE_LISTS(READ_VERTEX), USE(TILE_DEPTHS, READ_VERTEX)},
+    11,
     debug_record,
     NULL,
     NULL};

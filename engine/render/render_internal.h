@@ -87,6 +87,19 @@ typedef struct PipelineKey {
 typedef struct PipelineSlot {
     PipelineKey key;
     GpuPipeline pipeline;
+    PIPELINE_CLUSTERED,
+    PIPELINE_TILE_DEPTH,
+    PIPELINE_TILE_DEPTH_MS, // of a multisampled depth buffer
+    PIPELINE_LIST_REFINE,
+    PIPELINE_LIST_COUNT,
+    PIPELINE_LIST_SCAN,
+    PIPELINE_LIST_FILL,
+    PIPELINE_CLUSTER_KEYS,
+    PIPELINE_CLUSTER_KEYS_MS,
+    PIPELINE_CLUSTER_SCAN,
+    PIPELINE_CLUSTER_PLACES,
+    PIPELINE_CLUSTER_COUNT,
+    PIPELINE_CLUSTER_FILL,
 } PipelineSlot;
 
 // --- Passes (pass_table.c, passes.c) ---
@@ -175,6 +188,49 @@ struct Renderer {
     GpuTexture falloff, normal_z, palette; // look-ups (lookups.c), made when first asked for
     u64 falloff_key, palette_key;          // hash of what they hold
     MaterialGroup *material_groups;
+// --- Texts in the picture (overlay.c) ---
+
+typedef enum TextLayer {
+    TEXT_PACKET,  // the packet's own
+    TEXT_LEGEND,  // of a debug view, over its lines
+    TEXT_CAPTION, // of a split picture
+    TEXT_LAYER_COUNT
+} TextLayer;
+// A line that the renderer itself adds.
+typedef struct Note {
+    TextLayer layer;
+    f32 x_px, y_px, size_px;
+    u32 color; // RGBA8 sRGB, red in the low byte
+    char text[96];
+} Note;
+#define NOTES_CAP 64
+
+// What belongs to one packet of a frame. A split frame draws two packets in one submit: the
+// renderer's own fields are those of the one in use, and the other's are parked here
+// (frame_sets_exchange). All other targets and buffers serve both, one after the other.
+typedef struct FrameSet {
+    GpuBuffer buffers[FRAME_BUFFER_COUNT];
+    GpuBindGroup frame_group;
+    u32 frame_group_version;
+    u32 layout, gbuffer_width_px, gbuffer_height_px;
+    GpuFormat depth_format;
+    GpuTexture gbuffer[6]; // and DEPTH, which comes after them
+    GpuUsage gbuffer_usage[6];
+    GpuBuffer text_vertices, text_indices, line_vertices;
+    u32 text_ends[TEXT_LAYER_COUNT], line_vertex_count;
+} FrameSet;
+
+// Light lists that the device makes (passes_lists.c): how large the buffers shall be, and what
+// frames report. A split frame has two packets, hence two reports a slot.
+#define LIST_REPORTS_CAP (GPU_FRAMES_IN_FLIGHT_MAX * 2)
+typedef struct DeviceLists {
+    u32 index_cap, index_limit; // list entries; limit 0 = what the device allows
+    u32 cluster_cap, cluster_limit;
+    GpuBuffer reports;              // GRID_COUNTER_COUNT counters each
+    bool reported[LIST_REPORTS_CAP]; // is on the way, or there and not read
+    u32 counters[GRID_COUNTER_COUNT]; // of the newest report
+} DeviceLists;
+
     u32 material_group_count, material_group_cap;
 
     PipelineSlot pipelines[PIPELINES_CAP];
@@ -220,7 +276,11 @@ void overlay_destroy(Renderer *renderer);
 bool lookups_update(Renderer *renderer, const Packet *packet);
 void lookups_destroy(Renderer *renderer);
 
-// passes_lists.c: buffers that the device fills, as large as the packet needs.
+// volumes.c: meshes of light volumes.
+bool volumes_create(Renderer *renderer);
+void volumes_destroy(Renderer *renderer);
+
+// device_lists.c: buffers that the device fills, as large as the packet needs.
 bool device_lists_resize(Renderer *renderer, const Packet *packet);
 
 // passes.c
@@ -229,4 +289,20 @@ void pass_run(const PassContext *context, const Pass *pass);
 void draw_list(const PassContext *context, PipelineKind kind, PacketSection section,
                bool alpha_mask);
 
+    DeviceLists lists;
 #endif
+// Counters of the frame that last used a frame slot, which must be done: buffers grow by them, and
+// the stats tell them.
+void device_lists_read(Renderer *renderer, u32 slot);
+void device_lists_destroy(Renderer *renderer);
+// Opaque surfaces are shaded by lists from LIST_CELLS: the packet's, narrowed by depths, or made
+// anew for tiles or clusters.
+bool device_lists_used(const RenderSettings *settings);
+bool tile_lists_refined(const RenderSettings *settings);
+bool tile_lists_made(const RenderSettings *settings);
+bool cluster_lists_made(const RenderSettings *settings);
+// The stats of this packet's lists, as far as they are known.
+void device_lists_stats(Renderer *renderer, const Packet *packet);
+
+// renderer.c: one packet's uploads and passes.
+bool packet_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet);
