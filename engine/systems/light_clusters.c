@@ -15,8 +15,8 @@
 #define LIGHTS_PER_JOB 128
 // Part of a slice that a shader's slice may be off; float's log2 is good for 1/500 at 256 slices.
 #define SLICE_SLACK (1.0 / 128.0)
-// Clusters below this part of the smallest light's radius tell nothing more: nearer ones are one.
-#define FINEST_PART (1.0f / 16.0f)
+// The first slice may be this part of the smallest light's radius long: finer tells nothing more.
+#define FINEST_PART 0.25f
 
 // ---- slices ----
 
@@ -44,7 +44,7 @@ ClusterSlices light_cluster_slices(const LightGridInput *in, u32 cells_cap) {
     // The cap is for lenses from hostile files; a single row of tiles is the widest real one.
     part = part > 1e-4f ? MIN(part, 1e3f) : 1e-4f;
     f32 factor = 1.0f + part, end = in->near * factor;
-    end = MAX(end, MAX(nearest, smallest * FINEST_PART / part));
+    end = MAX(end, MAX(nearest, in->near + smallest * FINEST_PART));
     end = CLAMP(end, 1e-6f, 1e18f);
     farthest = CLAMP(farthest, 1e-6f, 1e18f);
     if (cap <= 2 || !(farthest > end))
