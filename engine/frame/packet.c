@@ -172,6 +172,9 @@ static const char *check_instances(const Packet *packet) {
         if (!floats_finite(instances[i].world, 12)) return "instance matrix is not finite";
         if (instances[i].ids[0] >= packet->materials.count)
             return "instance names a material that is not there";
+        f32 share;
+        memcpy(&share, &instances[i].ids[2], sizeof share);
+        if (!(share >= 0.0f && share <= 1.0f)) return "instance has an impossible share";
     }
     return NULL;
 }
@@ -187,6 +190,7 @@ static const char *check_draws(const Packet *packet, PacketSection section, u32 
             return "draw names a mesh that is not there";
         if (draw->material >= packet->materials.count)
             return "draw names a material that is not there";
+        if (draw->vertex_lit > 2) return "draw has an unknown way of vertex lighting";
         if (draw->lod >= MESH_LODS_CAP) return "draw names a level of detail that no mesh has";
         if (draw->instance_count == 0 ||
             (u64)draw->first_instance + draw->instance_count > packet->instances.count)

@@ -27,6 +27,9 @@ typedef struct PacketDraw {
     u32 material; // index into materials
     u32 first_instance, instance_count;
     u32 lod; // level of detail; a mesh that has fewer shows its last one
+    // Forward paths: 1 = some of each instance's local light comes from the vertices (how much:
+    // InstanceRecord.ids[2]), 2 = all of it does. Not of double-sided materials.
+    u32 vertex_lit;
 } PacketDraw;
 
 // What the renderer needs of a material beside its MaterialRecord.

@@ -410,6 +410,7 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
     write_frame(&parts.frame, &desc, &parts.view, &parts.lights, &environment);
     parts.posts = packet_collect_posts(&desc, &parts.view, scratch);
     parts.palette = packet_collect_materials(desc.world, scratch);
+    parts.view.vertex_lighting = parts.lights.vertex_lighting;
     parts.draws = packet_collect_draws(&desc, &parts.view, parts.palette, visible.rows,
                                        visible.count, NULL, scratch);
     for (u32 alpha = 0; alpha < 3; alpha++)

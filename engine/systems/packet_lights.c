@@ -1,116 +1,345 @@
-// packet_lights.c: the light manager: from the level's lights to those that this frame shades.
-// Data in: the light table (with derived columns), settings, the view. Data out: light records in
-// a stable order (points, spots, each in row order), the GI lights,
-// the directional lights. Called by: packet_build. Does not: merge or rank lights, or decide tiles.
+// packet_lights.c: the light manager of a frame: from the level's lights to those that it shades.
+// Data in: the light table (with derived columns), settings, the view, the state's decisions or
+// none. Data out: light records in a stable order (by LIGHT_CLASSES, in row order within a class, a
+// merged light at its first partner's place), counts and marks of what became of each light, the GI
+// lights, the directional lights. Called by: packet_build. Does not: decide what is merged, dropped
+// or over budget (light_decide.h), or which tiles a light touches.
 //
-// Everything is done on whole arrays: one pass over the table computes the candidates (bounding
-// sphere, colour; radius -1 for those that cannot matter), one culls, one packs.
-#include "packet_parts.h"
-#include "../base/jobs.h"
+// Stages, each over whole arrays: candidates, frustum, occluders, then the shares of brightness
+// that merging, dropping and the budget left, then level of detail and classes. The state's
+// decisions are those of all stages together; a packet that switches one off, or wants another
+// budget, has the decision made afresh for itself.
+#include "light_manager_state.h"
+#include "../base/clock.h"
 #include "../base/log.h"
+#include <string.h>
 
-#define LIGHTS_PER_JOB 1024
-
-typedef struct LightCandidates {
-    f32 *x, *y, *z, *radius; // bounding sphere, world; [count padded]
-    f32 *r, *g, *b;          // colour times all factors
-} LightCandidates;
-
-typedef struct CandidateJob {
+typedef struct LightCull {
+    const PacketBuildDesc *desc;
+    const PacketView *view;
+    const OcclusionBuffer *occlusion; // NULL = nothing hides
     const LightTable *light;
-    LightCandidates out;
-    f32 gain;
-} CandidateJob;
+    LightCandidates candidates;
+    LightDecision decision;
+    LightManagerConfig config;
+    u8 *seen; // [rows] 1 = inside the view, 2 = and not hidden
+    // Pairs, in the order of their first partners' rows.
+    MergedLight *merged;
+    u32 *merged_row; // first partner
+    u8 *merged_seen;
+    u32 merged_count;
+} LightCull;
 
-// Smallest sphere around the part of a ball of radius `reach` that lies in a cone with its tip in
-// the centre: up to 45 degrees through tip and rim, beyond around the rim's circle. Returns how far
-// along the axis its centre lies.
-static f32 cone_sphere(f32 reach, f32 cos_half, f32 sin_half, f32 *radius) {
-    if (cos_half > 0.70710678f) {
-        *radius = reach / (2.0f * cos_half);
-        return *radius;
-    }
-    *radius = reach * sin_half;
-    return reach * cos_half;
+static f32 lap_ms(f64 *start_ms) {
+    f64 now = clock_now_ms(), lap = now - *start_ms;
+    *start_ms = now;
+    return (f32)lap;
 }
 
-static void job_candidates(void *context, u32 begin, u32 end, u32 thread_index) {
-    (void)thread_index;
-    const CandidateJob *job = context;
-    const LightTable *light = job->light;
-    const LightCandidates *out = &job->out;
-    for (u32 i = begin; i < end; i++) {
-        f32 factor = light->intensity[i] * light->gain[i] * job->gain;
-        f32 r = light->color_r[i] * factor, g = light->color_g[i] * factor,
-            b = light->color_b[i] * factor;
-        f32 x = light->x[i], y = light->y[i], z = light->z[i], radius = light->reach[i];
-        if (light->kind[i] == LIGHT_SPOT) {
-            f32 half_rad = DEG_TO_RAD(light->outer_angle[i]);
-            f32 along = cone_sphere(radius, det_cos(half_rad), det_sin(half_rad), &radius);
-            x += light->dir_x[i] * along;
-            y += light->dir_y[i] * along;
-            z += light->dir_z[i] * along;
+// ---- frustum, occluders ----
+
+static u32 mark_rows(u8 *marks, const u32 *rows, u32 count, u8 mark) {
+    for (u32 i = 0; i < count; i++) marks[rows[i]] = mark;
+    return count;
+}
+
+// rows[padded count]: those that are seen, ascending. Returns how many.
+static u32 cull_rows(LightCull *cull, LightParts *parts, u32 *rows, f64 *clock_ms, Arena *scratch) {
+    const LightCandidates *c = &cull->candidates;
+    const RenderSettings *settings = &cull->desc->settings;
+    Frustum everywhere = {.count = 0};
+    bool cuts = settings->manager && settings->light_culling;
+    u32 count = cull_spheres(cuts ? &cull->view->frustum : &everywhere, c->x, c->y, c->z, c->radius,
+                             cull->light->table.count, rows);
+    parts->visible = mark_rows(cull->seen, rows, count, 1);
+    parts->stage_ms[LIGHT_STAGE_FRUSTUM] = lap_ms(clock_ms);
+    if (settings->manager && settings->occlusion)
+        count = occlusion_cull(cull->occlusion, c->x, c->y, c->z, c->radius, rows, count, scratch);
+    parts->occluded = parts->visible - mark_rows(cull->seen, rows, count, 2);
+    parts->stage_ms[LIGHT_STAGE_OCCLUSION] = lap_ms(clock_ms);
+    return count;
+}
+
+// Merged lights have spheres of their own, wider than their partners'.
+static void collect_merged(LightCull *cull, Arena *scratch) {
+    const LightDecision *d = &cull->decision;
+    u32 rows = cull->light->table.count, count = 0;
+    for (u32 row = 0; row < rows; row++)
+        count += d->partner[row] != ROW_NONE && row < d->partner[row] && d->pair_weight[row] > 0.0f;
+    u64 padded = ALIGN_UP(count, SIMD_WIDTH);
+    cull->merged = ARENA_PUSH(scratch, MergedLight, count);
+    cull->merged_row = ARENA_PUSH(scratch, u32, count);
+    cull->merged_seen = ARENA_PUSH(scratch, u8, count);
+    f32 *sphere[4];
+    for (u32 i = 0; i < 4; i++) sphere[i] = ARENA_PUSH_COLUMN(scratch, f32, padded);
+    for (u32 row = 0; row < rows; row++) {
+        u32 other = d->partner[row];
+        if (other == ROW_NONE || row > other || !(d->pair_weight[row] > 0.0f)) continue;
+        MergedLight m = light_merge_pair(cull->light, &cull->candidates, row, other);
+        u32 i = cull->merged_count++;
+        cull->merged[i] = m;
+        cull->merged_row[i] = row;
+        sphere[0][i] = m.center.x, sphere[1][i] = m.center.y, sphere[2][i] = m.center.z;
+        sphere[3][i] = m.radius;
+    }
+    const RenderSettings *settings = &cull->desc->settings;
+    Frustum everywhere = {.count = 0};
+    u32 *seen = ARENA_PUSH(scratch, u32, padded);
+    u32 seen_count = cull_spheres(settings->light_culling ? &cull->view->frustum : &everywhere,
+                                  sphere[0], sphere[1], sphere[2], sphere[3], count, seen);
+    if (settings->occlusion)
+        seen_count = occlusion_cull(cull->occlusion, sphere[0], sphere[1], sphere[2], sphere[3],
+                                    seen, seen_count, scratch);
+    mark_rows(cull->merged_seen, seen, seen_count, 1);
+}
+
+// ---- decisions ----
+
+static LightDecision read_state(const LightManagerState *state, const World *world,
+                                const LightTable *light, Arena *scratch) {
+    u32 count = light->table.count, ticks = world->tick - state->tick;
+    LightDecision d = light_decision_make(count, scratch);
+    for (u32 row = 0; row < count; row++) {
+        const LightSlot *slot = light_slot(state, light->table.entity[row]);
+        if (!slot) continue; // came after the last step
+        d.weight[row] = light_fade(slot->weight, slot->target, ticks);
+        d.fate[row] = (u8)slot->fate;
+        if (!slot->partner) continue;
+        u32 other = table_row(&light->table, slot->partner);
+        if (other == ROW_NONE) continue;
+        d.partner[row] = other;
+        d.pair_weight[row] = light_fade(slot->pair_weight, slot->pair_target, ticks);
+        d.pair_error[row] = slot->pair_error;
+    }
+    return d;
+}
+
+static bool state_serves(const PacketBuildDesc *desc, const LightManagerConfig *config) {
+    const RenderSettings *s = &desc->settings;
+    return desc->light_manager && s->light_culling && s->occlusion && s->merge && s->drop &&
+           (s->budget == 0 || s->budget == config->budget) && s->light_limit == 0 &&
+           light_manager_knows(desc->light_manager, desc->world, desc->camera);
+}
+
+static void decide(LightCull *cull, LightParts *parts, const u32 *rows, u32 row_count,
+                   f64 *clock_ms, Arena *scratch) {
+    const PacketBuildDesc *desc = cull->desc;
+    f32 own_ms[LIGHT_STAGE_COUNT] = {0};
+    const f32 *ms = own_ms;
+    if (!desc->settings.manager) {
+        cull->decision = light_decision_make(cull->light->table.count, scratch);
+    } else if (state_serves(desc, &cull->config)) {
+        cull->decision = read_state(desc->light_manager, desc->world, cull->light, scratch);
+        ms = desc->light_manager->stage_ms;
+    } else {
+        LightScene scene = light_scene_make(desc->world, desc->camera, &cull->candidates);
+        LightDecideDesc how = {.rows = rows,
+                               .row_count = row_count,
+                               .merge = desc->settings.merge,
+                               .drop = desc->settings.drop,
+                               .budget = desc->settings.budget ? desc->settings.budget
+                                                               : cull->config.budget};
+        cull->decision = light_decide(&scene, &how, own_ms, scratch);
+    }
+    for (u32 stage = LIGHT_STAGE_MERGE; stage <= LIGHT_STAGE_BUDGET; stage++)
+        parts->stage_ms[stage] = ms[stage];
+    lap_ms(clock_ms);
+}
+
+// ---- records ----
+
+// Factor on the highlight by the distance from the eye to the nearest point of the light's volume.
+static f32 highlight_of(const LightCull *cull, Vec3 center, f32 radius) {
+    if (!cull->desc->settings.manager || !cull->desc->settings.light_lod) return 1.0f;
+    f32 distance = vec3_length(vec3_sub(center, cull->view->position)) - radius;
+    f32 near = cull->config.lod_near, far = cull->config.lod_far;
+    if (distance < near) return 1.0f;
+    return far > near ? f32_saturate((far - distance) / (far - near)) : 0.0f;
+}
+
+typedef struct ShownLight {
+    u32 row, merged; // merged: index into LightCull.merged, UINT32_MAX = the row itself
+    f32 weight, highlight;
+} ShownLight;
+
+// Points, diffuse points, spots, diffuse spots (LIGHT_CLASSES of shared.h).
+static u32 class_of(const LightCull *cull, const ShownLight *shown) {
+    return (cull->light->kind[shown->row] == LIGHT_SPOT) * 2u + !(shown->highlight > 0.0f);
+}
+
+static ShownLight *gather_shown(LightCull *cull, LightParts *parts, u32 *count, Arena *scratch) {
+    const LightDecision *d = &cull->decision;
+    const LightCandidates *c = &cull->candidates;
+    u32 rows = cull->light->table.count, pair = 0;
+    ShownLight *shown = ARENA_PUSH(scratch, ShownLight, rows + cull->merged_count);
+    *count = 0;
+    for (u32 row = 0; row < rows; row++) {
+        if (cull->seen[row] == 2 && d->weight[row] > 0.0f)
+            shown[(*count)++] = (ShownLight){
+                row, UINT32_MAX, d->weight[row],
+                highlight_of(cull, vec3(c->x[row], c->y[row], c->z[row]), c->radius[row])};
+        else if (cull->seen[row] == 2 && d->pair_weight[row] > 0.0f)
+            parts->merged++;
+        else if (cull->seen[row] == 2 && (d->fate[row] == LIGHT_OVER_BUDGET))
+            parts->over_budget++;
+        else if (cull->seen[row] == 2)
+            parts->dropped++;
+        if (pair == cull->merged_count || cull->merged_row[pair] != row) continue;
+        const MergedLight *m = &cull->merged[pair];
+        if (cull->merged_seen[pair]) {
+            shown[(*count)++] = (ShownLight){row, pair, d->pair_weight[row],
+                                             highlight_of(cull, m->center, m->radius)};
+            parts->merged_pairs++;
+            parts->merge_error += d->pair_error[row];
         }
-        // One that adds nothing is no light. (Negative colours cannot come from level text; a game
-        // may use them: they darken.) A factor that overflowed is no light either.
-        bool lights = (r != 0.0f || g != 0.0f || b != 0.0f) && fabsf(r) < 1e30f &&
-                      fabsf(g) < 1e30f && fabsf(b) < 1e30f && radius > 0.0f;
-        out->x[i] = x, out->y[i] = y, out->z[i] = z;
-        out->r[i] = r, out->g[i] = g, out->b[i] = b;
-        out->radius[i] = lights && light->kind[i] != LIGHT_DIRECTIONAL ? radius : -1.0f;
+        pair++;
     }
+    return shown;
 }
 
-static LightCandidates collect_candidates(const LightTable *light, f32 gain, Arena *scratch) {
-    u64 padded = ALIGN_UP(light->table.count, SIMD_WIDTH);
-    CandidateJob job = {.light = light, .gain = gain};
-    f32 **columns[] = {&job.out.x, &job.out.y, &job.out.z, &job.out.radius,
-                       &job.out.r, &job.out.g, &job.out.b};
-    for (u32 i = 0; i < COUNT_OF(columns); i++)
-        *columns[i] = ARENA_PUSH_COLUMN(scratch, f32, padded);
-    jobs_for(light->table.count, LIGHTS_PER_JOB, job_candidates, &job);
-    return job.out;
+static void count_shown(LightParts *parts, const ShownLight *shown, u32 count) {
+    for (u32 i = 0; i < count; i++) {
+        parts->fading += shown[i].weight < 1.0f;
+        parts->near += shown[i].highlight >= 1.0f;
+        parts->far += !(shown[i].highlight > 0.0f);
+    }
+    parts->between = count - parts->near - parts->far;
 }
 
-static LightRecord make_record(const LightTable *light, const LightCandidates *candidates,
-                               u32 row) {
-    f32 reach = light->reach[row];
-    return (LightRecord){{light->x[row], light->y[row], light->z[row], 1.0f / (reach * reach)},
-                         {candidates->r[row], candidates->g[row], candidates->b[row], 1.0f}};
+static LightRecord make_record(Vec3 position, f32 range, Vec3 color, f32 weight, f32 highlight) {
+    return (LightRecord){{position.x, position.y, position.z, 1.0f / (range * range)},
+                         {color.x * weight, color.y * weight, color.z * weight, highlight}};
 }
 
-static SpotRecord make_spot(const LightTable *light, u32 row) {
-    f32 inner = det_cos(DEG_TO_RAD(light->inner_angle[row]));
-    f32 outer = det_cos(DEG_TO_RAD(light->outer_angle[row]));
+static LightRecord row_record(const LightCull *cull, u32 row, f32 weight, f32 highlight) {
+    const LightTable *light = cull->light;
+    const LightCandidates *c = &cull->candidates;
+    return make_record(vec3(light->x[row], light->y[row], light->z[row]), light->reach[row],
+                       vec3(c->r[row], c->g[row], c->b[row]), weight, highlight);
+}
+
+static SpotRecord make_spot(Vec3 direction, f32 inner_deg, f32 outer_deg) {
+    f32 inner = det_cos(DEG_TO_RAD(inner_deg)), outer = det_cos(DEG_TO_RAD(outer_deg));
     // An inner angle at or beyond the outer one is a hard edge.
-    return (SpotRecord){{light->dir_x[row], light->dir_y[row], light->dir_z[row], outer},
+    return (SpotRecord){{direction.x, direction.y, direction.z, outer},
                         {1.0f / MAX(inner - outer, 1e-4f), 0.0f, 0.0f, 0.0f}};
+}
+
+static SpotRecord shown_spot(const LightCull *cull, const ShownLight *shown) {
+    const LightTable *light = cull->light;
+    u32 row = shown->row;
+    if (shown->merged != UINT32_MAX) {
+        const MergedLight *m = &cull->merged[shown->merged];
+        return make_spot(m->direction, m->inner_deg, m->outer_deg);
+    }
+    return make_spot(vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]),
+                     light->inner_angle[row], light->outer_angle[row]);
 }
 
 // Lights far away whose window is closed everywhere: lanes without a light read it.
 static const LightRecord dummy_light = {{0.0f, -1e6f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f, 0.0f}};
 
-static void pack_local_lights(LightParts *parts, const LightTable *light,
-                              const LightCandidates *candidates, const u32 *visible,
-                              Arena *scratch) {
-    u32 count = parts->visible;
-    u32 *order = ARENA_PUSH(scratch, u32, count);
-    for (u32 i = 0; i < count; i++)
-        if (light->kind[visible[i]] == LIGHT_POINT) order[parts->point_count++] = visible[i];
-    parts->spot_count = count - parts->point_count;
-    for (u32 i = 0, spot = parts->point_count; i < count; i++)
-        if (light->kind[visible[i]] != LIGHT_POINT) order[spot++] = visible[i];
-
+// place[count]: where each went.
+static void write_records(const LightCull *cull, LightParts *parts, const ShownLight *shown,
+                          u32 count, u32 *place, Arena *scratch) {
+    u32 begin[LIGHT_CLASSES + 1] = {0};
+    for (u32 i = 0; i < count; i++) begin[class_of(cull, &shown[i]) + 1]++;
+    parts->point_highlights = begin[1];
+    parts->point_count = begin[1] + begin[2];
+    parts->spot_highlights = begin[3];
+    parts->spot_count = begin[3] + begin[4];
+    for (u32 i = 0; i < LIGHT_CLASSES; i++) begin[i + 1] += begin[i];
     parts->lights = ARENA_PUSH(scratch, LightRecord, count + 1);
     parts->spots = ARENA_PUSH(scratch, SpotRecord, parts->spot_count);
     for (u32 i = 0; i < count; i++) {
-        u32 row = order[i];
-        parts->lights[i] = make_record(light, candidates, row);
-        if (i >= parts->point_count) parts->spots[i - parts->point_count] = make_spot(light, row);
+        const ShownLight *s = &shown[i];
+        u32 at = place[i] = begin[class_of(cull, s)]++;
+        const MergedLight *m = s->merged == UINT32_MAX ? NULL : &cull->merged[s->merged];
+        parts->lights[at] =
+            m ? make_record(m->position, m->range, m->color, s->weight, s->highlight)
+              : row_record(cull, s->row, s->weight, s->highlight);
+        if (at >= parts->point_count) parts->spots[at - parts->point_count] = shown_spot(cull, s);
     }
     parts->lights[count] = dummy_light;
-    parts->point_highlights = parts->point_count;
-    parts->spot_highlights = parts->spot_count;
+}
+
+// ---- marks ----
+
+static PacketLightMark make_mark(Vec3 position, f32 range, bool spot, Vec3 direction,
+                                 f32 outer_deg) {
+    return (PacketLightMark){.position = {position.x, position.y, position.z},
+                             .range = range,
+                             .direction = {direction.x, direction.y, direction.z},
+                             .cos_outer = spot ? det_cos(DEG_TO_RAD(outer_deg)) : -2.0f,
+                             .light = UINT32_MAX};
+}
+
+static u32 row_fate(const LightCull *cull, u32 row) {
+    const LightDecision *d = &cull->decision;
+    if (cull->seen[row] == 0) return LIGHT_OUTSIDE;
+    if (cull->seen[row] == 1) return LIGHT_OCCLUDED;
+    if (d->partner[row] != ROW_NONE && d->pair_weight[row] > 0.0f) return LIGHT_MERGED;
+    if (d->weight[row] > 0.0f) return LIGHT_KEPT;
+    return d->fate[row] == LIGHT_OVER_BUDGET ? LIGHT_OVER_BUDGET : LIGHT_DROPPED;
+}
+
+static u32 merged_fate(const LightCull *cull, u32 pair) {
+    return cull->merged_seen[pair] ? LIGHT_MERGER : LIGHT_OUTSIDE;
+}
+
+// All local lights of the level that are lit, then the merged ones; `light` names their records.
+static void write_marks(const LightCull *cull, LightParts *parts, const ShownLight *shown,
+                        const u32 *place, u32 shown_count, Arena *scratch) {
+    const LightTable *light = cull->light;
+    u32 rows = light->table.count, count = 0;
+    PacketLightMark *marks = ARENA_PUSH(scratch, PacketLightMark, rows + cull->merged_count);
+    u32 *mark_of_row = ARENA_PUSH(scratch, u32, rows);
+    for (u32 row = 0; row < rows; row++) {
+        mark_of_row[row] = count;
+        if (cull->candidates.radius[row] < 0.0f) continue;
+        marks[count] = make_mark(vec3(light->x[row], light->y[row], light->z[row]),
+                                 light->reach[row], light->kind[row] == LIGHT_SPOT,
+                                 vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]),
+                                 light->outer_angle[row]);
+        marks[count].weight = cull->decision.weight[row];
+        marks[count++].fate = row_fate(cull, row);
+    }
+    u32 own = count;
+    for (u32 i = 0; i < cull->merged_count; i++) {
+        const MergedLight *m = &cull->merged[i];
+        if (m->radius < 0.0f)
+            marks[count] = (PacketLightMark){.light = UINT32_MAX};
+        else
+            marks[count] =
+                make_mark(m->position, m->range, m->kind == LIGHT_SPOT, m->direction, m->outer_deg);
+        marks[count].weight = cull->decision.pair_weight[cull->merged_row[i]];
+        marks[count++].fate = merged_fate(cull, i);
+    }
+    for (u32 i = 0; i < shown_count; i++) {
+        const ShownLight *s = &shown[i];
+        PacketLightMark *mark =
+            &marks[s->merged == UINT32_MAX ? mark_of_row[s->row] : own + s->merged];
+        mark->light = place[i];
+        mark->highlight = s->highlight;
+    }
+    parts->marks = marks;
+    parts->mark_count = count;
+}
+
+static bool wants_marks(u32 view) { return view >= VIEW_LIGHT_RECTS && view <= VIEW_LIGHT_LODS; }
+
+// ---- GI, directional lights ----
+
+static void collect_gi(LightCull *cull, LightParts *parts, Arena *scratch) {
+    const LightTable *light = cull->light;
+    const f32 *radius = cull->candidates.radius;
+    u32 count = light->table.count;
+    for (u32 row = 0; row < count; row++)
+        parts->gi_count += radius[row] >= 0.0f && light->affects_gi[row];
+    parts->gi_lights = ARENA_PUSH(scratch, LightRecord, parts->gi_count);
+    for (u32 row = 0, i = 0; i < parts->gi_count; row++)
+        if (radius[row] >= 0.0f && light->affects_gi[row])
+            parts->gi_lights[i++] = row_record(cull, row, 1.0f, 1.0f);
 }
 
 // The first that casts a shadow comes first, the others in row order.
@@ -145,29 +374,40 @@ static void collect_directionals(LightParts *parts, const LightTable *light,
 }
 
 LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *view,
-                                 Arena *scratch) {
+                                 const OcclusionBuffer *occlusion, Arena *scratch) {
     const LightTable *light = WORLD_TABLE(desc->world, Light, light);
-    u32 count = light->table.count;
+    u32 count = light->table.count, limit = desc->settings.light_limit;
     LightParts parts = {0};
-    LightCandidates candidates = collect_candidates(light, desc->settings.light_gain, scratch);
-
-    u32 limit = desc->settings.light_limit ? desc->settings.light_limit : UINT32_MAX;
+    f64 clock_ms = clock_now_ms();
+    LightCull cull = {.desc = desc,
+                      .view = view,
+                      .occlusion = occlusion,
+                      .light = light,
+                      .candidates = light_candidates(light, desc->settings.light_gain, scratch),
+                      .config = light_manager_config(desc->world),
+                      .seen = ARENA_PUSH(scratch, u8, count)};
     for (u32 row = 0; row < count; row++) {
         if (light->kind[row] == LIGHT_DIRECTIONAL) continue;
-        if (parts.total++ >= limit) candidates.radius[row] = -1.0f;
-        parts.gi_count += candidates.radius[row] >= 0.0f && light->affects_gi[row];
+        if (parts.total++ >= (limit ? limit : UINT32_MAX)) cull.candidates.radius[row] = -1.0f;
     }
-    parts.gi_lights = ARENA_PUSH(scratch, LightRecord, parts.gi_count);
-    for (u32 row = 0, i = 0; i < parts.gi_count; row++)
-        if (candidates.radius[row] >= 0.0f && light->affects_gi[row])
-            parts.gi_lights[i++] = make_record(light, &candidates, row);
+    parts.stage_ms[LIGHT_STAGE_CANDIDATES] = lap_ms(&clock_ms);
 
-    u32 *visible = ARENA_PUSH(scratch, u32, ALIGN_UP(count, SIMD_WIDTH));
-    Frustum everywhere = {.count = 0};
-    parts.visible =
-        cull_spheres(desc->settings.light_culling ? &view->frustum : &everywhere, candidates.x,
-                     candidates.y, candidates.z, candidates.radius, count, visible);
-    pack_local_lights(&parts, light, &candidates, visible, scratch);
-    collect_directionals(&parts, light, &candidates);
+    u32 *rows = ARENA_PUSH(scratch, u32, ALIGN_UP(count, SIMD_WIDTH));
+    u32 row_count = cull_rows(&cull, &parts, rows, &clock_ms, scratch);
+    decide(&cull, &parts, rows, row_count, &clock_ms, scratch);
+
+    collect_merged(&cull, scratch);
+    u32 shown_count;
+    ShownLight *shown = gather_shown(&cull, &parts, &shown_count, scratch);
+    count_shown(&parts, shown, shown_count);
+    u32 *place = ARENA_PUSH(scratch, u32, shown_count);
+    write_records(&cull, &parts, shown, shown_count, place, scratch);
+    parts.marks = ARENA_PUSH(scratch, PacketLightMark, 0);
+    if (wants_marks(desc->settings.view))
+        write_marks(&cull, &parts, shown, place, shown_count, scratch);
+    collect_gi(&cull, &parts, scratch);
+    collect_directionals(&parts, light, &cull.candidates);
+    parts.vertex_lighting = desc->settings.vertex_lighting ? cull.config.vertex_lighting : 0.0f;
+    parts.stage_ms[LIGHT_STAGE_INDIVIDUAL] = lap_ms(&clock_ms);
     return parts;
 }

@@ -14,6 +14,7 @@ typedef struct PacketView {
     Vec3 position, right, up, forward; // world; orthonormal
     f32 tan_x, tan_y, near;            // tangents of the half angles of view
     f32 height_px;
+    f32 vertex_lighting; // beyond this distance, m, drawables are lit at their vertices; 0 = never
     Mat4 view, view_projection;
     Frustum frustum;
 } PacketView;
@@ -89,6 +90,7 @@ MaterialPalette *packet_collect_materials(const World *world, Arena *scratch);
 typedef struct DrawLists {
     u32 *rows;     // [row_count] drawable row of each instance, in draw order
     u16 *material; // [row_count] palette index of each
+    f32 *vertex_share; // [row_count] of local light that comes from the vertices
     u32 row_count;
     PacketDraw *lists[3]; // by AlphaMode; first_instance counts from this object's first row
     u32 counts[3];

@@ -72,7 +72,8 @@ extern "C" {
     C(BOOL, casts_shadow, "", 0, "casts_shadow", 0, 1, "has a shadow map (directional)")          \
     C(BOOL, is_static, "", 0, "static", 0, 1, "never moves or changes")                           \
     C(BOOL, affects_gi, "", 1, "affects_gi", 0, 1, "lights the voxels")                           \
-    C(F32, priority, "", 1, "priority", 0, 100, "weight under a light budget")                    \
+    C(F32, priority, "", 1, "priority", 0, 100,                                                   \
+      "weight under a light budget; 100 = pinned: never merged, dropped or faded")                \
     COLUMNS_DERIVED3_(C, x, y, z, "m", "transform: world position")                               \
     COLUMNS_DERIVED3_(C, dir_x, dir_y, dir_z, "", "transform: unit direction it shines, world")   \
     C(F32, reach, "m", 0, "", 0, 0, "transform: range in use")                                    \
@@ -236,6 +237,7 @@ typedef enum VoxelMode { VOXEL_NONE, VOXEL_STATIC, VOXEL_DYNAMIC } VoxelMode;
 typedef enum CollisionMode { COLLISION_NONE, COLLISION_MESH, COLLISION_BOX } CollisionMode;
 typedef enum Brdf { BRDF_LAMBERT, BRDF_PHONG, BRDF_BLINN_PHONG, BRDF_BLINN_PHONG_NORMALIZED } Brdf;
 typedef enum DiffuseLobe { DIFFUSE_LAMBERT, DIFFUSE_OREN_NAYAR } DiffuseLobe;
+typedef enum OccluderShape { OCCLUDER_BOX, OCCLUDER_MESH } OccluderShape;
 typedef enum AlphaMode { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND } AlphaMode;
 typedef enum Attenuation {
     ATTENUATION_INVERSE_SQUARE,
