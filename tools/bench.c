@@ -95,6 +95,7 @@ static int bench_row(Bench *bench, const BenchRow *row, bool asked) {
         if (!bench->has_device) return TOOL_ENVIRONMENT;
     }
     arena_reset(&bench->arena);
+    bench->row = row->id;
     bench->in_experiment = row->kind == BENCH_EXPERIMENT;
     return row->run(bench, row->id) ? TOOL_OK : TOOL_DIFFERENT;
 }

@@ -39,7 +39,8 @@ typedef struct Bench {
     const char *plots; // directory for charts and tables of experiments, or NULL
     Headless headless;
     bool has_device;
-    Arena arena; // reset before each row
+    Arena arena;     // reset before each row
+    const char *row; // being measured
     bool in_experiment;
     BenchResult results[BENCH_RESULTS_CAP];
     u32 result_count;

@@ -7,10 +7,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define WIDTH        1280
-#define HEIGHT       720
-#define LIGHTS       256
-#define SETTLE_TICKS 30
+#define WIDTH  1280
+#define HEIGHT 720
+#define LIGHTS 256
 
 static void name_variant(FrameVariant *variant, const char *scene) {
     char word[48];
@@ -31,8 +30,8 @@ static bool claim_paths(Bench *bench, const char *id, const char *scene, const c
         frame_settings_every_light(&variants[v].settings);
         name_variant(&variants[v], scene);
     }
-    FrameRounds rounds = {3, 15, 45, 5000, 0};
-    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 1000, 0};
+    FrameRounds rounds = {3, 15, 45, 5000};
+    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 1000};
     bool ok = frame_bench_measure(&run, variants, COUNT_OF(order), &rounds);
     f64 base = frame_variant_ms(&variants[0]);
     for (u32 v = 0; ok && v < COUNT_OF(order); v++)
@@ -61,12 +60,12 @@ static bool claim_manager(Bench *bench, const char *id) {
         variants[v].settings.light_limit = 1024;
         variants[v].settings.manager = v == 0;
     }
-    FrameRounds rounds = {5, 31, 40, 0, SETTLE_TICKS};
-    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 0, 3};
+    FrameRounds rounds = {5, 31, 40, 0};
+    if (bench->quick) rounds = (FrameRounds){2, 3, 2, 0};
     RenderImage on, off;
     bool ok = frame_bench_measure(&run, variants, 2, &rounds) &&
-              frame_bench_picture(&run, &variants[0], SETTLE_TICKS, &bench->arena, &on) &&
-              frame_bench_picture(&run, &variants[1], 0, &bench->arena, &off);
+              frame_bench_picture(&run, &variants[0], &bench->arena, &on) &&
+              frame_bench_picture(&run, &variants[1], &bench->arena, &off);
     if (ok) {
         f64 ratio = frame_variant_ms(&variants[1]) / frame_variant_ms(&variants[0]);
         ImageDifference difference =

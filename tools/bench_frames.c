@@ -26,7 +26,7 @@ bool frame_bench_open(FrameBench *run, Bench *bench, const char *level, u32 widt
     const LightTable *lights = WORLD_TABLE(run->session.world, Light, light);
     for (u32 i = 0; i < lights->table.count; i++)
         run->light_count += lights->kind[i] != LIGHT_DIRECTIONAL;
-    run->progress = progress_begin("frames", run->step_count * STEP_UNITS, bench->common.quiet);
+    run->progress = progress_begin(bench->row, run->step_count * STEP_UNITS, bench->common.quiet);
     return true;
 }
 
@@ -37,14 +37,6 @@ void frame_bench_close(FrameBench *run) {
 }
 
 void frame_bench_tick(FrameBench *run) { session_tick(&run->session, (Input){0}); }
-
-void frame_bench_settle(FrameBench *run, u32 tick_count) {
-    for (u32 t = 0; t < tick_count; t++) {
-        frame_bench_tick(run);
-        session_frame_begin(&run->session);
-        session_packet(&run->session, &run->view);
-    }
-}
 
 bool frame_bench_draw(FrameBench *run, FrameSample *out, Arena *arena, RenderImage *image) {
     session_frame_begin(&run->session);
@@ -71,12 +63,11 @@ bool frame_bench_warm_up(FrameBench *run) {
 
 // --- variants ---
 
-// A first frame after these changed makes targets or lists anew.
+// A first frame after these changed makes targets anew.
 static bool needs_new_targets(const FrameBench *run) {
     const SessionView *a = &run->drawn, *b = &run->view;
     return a->width_px != b->width_px || a->height_px != b->height_px ||
-           a->settings.layout != b->settings.layout || a->settings.path != b->settings.path ||
-           a->settings.tile_px != b->settings.tile_px || a->settings.msaa != b->settings.msaa;
+           a->settings.layout != b->settings.layout || a->settings.msaa != b->settings.msaa;
 }
 
 static void use_variant(FrameBench *run, const FrameVariant *variant, u32 width, u32 height) {
@@ -85,11 +76,10 @@ static void use_variant(FrameBench *run, const FrameVariant *variant, u32 width,
     run->view.height_px = variant->height_px ? variant->height_px : height;
 }
 
-bool frame_bench_picture(FrameBench *run, const FrameVariant *variant, u32 settle, Arena *arena,
+bool frame_bench_picture(FrameBench *run, const FrameVariant *variant, Arena *arena,
                          RenderImage *out) {
     u32 width = run->view.width_px, height = run->view.height_px;
     use_variant(run, variant, width, height);
-    frame_bench_settle(run, settle);
     FrameSample sample;
     bool ok = frame_bench_draw(run, &sample, arena, out);
     run->view.width_px = width;
@@ -107,7 +97,8 @@ static void add_sample(FrameBench *run, FrameVariant *variant, const FrameSample
     variant->counts = sample->counts;
 }
 
-// Compiles and draws each variant once or twice; those that are slow have their only sample then.
+// Compiles and draws each variant; those that are slow have their only sample then. Others draw
+// again: the device's lists learn from a first frame how much room they need.
 static bool first_frames(FrameBench *run, FrameVariant *variants, u32 count,
                          const FrameRounds *rounds, u32 width, u32 height) {
     FrameSample sample;
@@ -119,7 +110,10 @@ static bool first_frames(FrameBench *run, FrameVariant *variants, u32 count,
         if (!packet || !renderer_warm_up_path(run->bench->headless.renderer, packet)) return false;
         if (!frame_bench_draw(run, &sample, NULL, NULL)) return false;
         variant->slow = rounds->slow_ms > 0.0 && sample.wall_ms > rounds->slow_ms;
-        if (variant->slow) add_sample(run, variant, &sample);
+        if (variant->slow)
+            add_sample(run, variant, &sample);
+        else if (!frame_bench_draw(run, &sample, NULL, NULL))
+            return false;
         progress_set(&run->progress, run->step * STEP_UNITS, variant->name);
     }
     return true;
@@ -133,12 +127,11 @@ bool frame_bench_measure(FrameBench *run, FrameVariant *variants, u32 count,
     FrameSample sample;
     for (u32 round = 0; ok && round < rounds->max && (share < 1.0 || round < rounds->min);
          round++) {
-        if (!rounds->settle) frame_bench_tick(run);
+        frame_bench_tick(run);
         for (u32 v = 0; ok && v < count; v++) {
             FrameVariant *variant = &variants[v];
             if (variant->slow) continue;
             use_variant(run, variant, width, height);
-            frame_bench_settle(run, rounds->settle);
             if (needs_new_targets(run)) ok = frame_bench_draw(run, &sample, NULL, NULL);
             ok = ok && frame_bench_draw(run, &sample, NULL, NULL);
             if (ok) add_sample(run, variant, &sample);

@@ -45,7 +45,6 @@ typedef struct FrameRounds {
     u32 min, max; // rounds; as many as fit into the budget
     f64 budget_s; // of all variants together, without warm-up
     f64 slow_ms;  // a frame that takes longer is drawn once; 0 = never
-    u32 settle;   // frame_bench_settle before each frame
 } FrameRounds;
 
 // step_count: how often frame_bench_measure will be called, for the progress bar.
@@ -55,11 +54,8 @@ void frame_bench_close(FrameBench *run);
 // A frame of run->view; image may be NULL, else its pixels lie in `arena`.
 bool frame_bench_draw(FrameBench *run, FrameSample *out, Arena *arena, RenderImage *image);
 void frame_bench_tick(FrameBench *run);
-// Ticks with a packet each, not drawn: what the light manager remembers and fades comes to rest
-// under run->view's settings.
-void frame_bench_settle(FrameBench *run, u32 tick_count);
-// The picture of a variant after `settle` ticks from now on, in `arena`.
-bool frame_bench_picture(FrameBench *run, const FrameVariant *variant, u32 settle, Arena *arena,
+// The picture of a variant at the session's tick, in `arena`.
+bool frame_bench_picture(FrameBench *run, const FrameVariant *variant, Arena *arena,
                          RenderImage *out);
 // Compiles what run->view needs and draws some frames.
 bool frame_bench_warm_up(FrameBench *run);

@@ -24,8 +24,8 @@ static bool measure(Bench *bench, const char *id, LayoutCost costs[LAYOUT_COUNT]
     if (!frame_bench_open(&run, bench, bench_level(bench, BENCH_LEVEL), sizes[0][0], sizes[0][1],
                           2))
         return false;
-    FrameRounds rounds = {5, 31, 40, 0, 0};
-    if (bench->quick) rounds = (FrameRounds){3, 5, 3, 0, 0};
+    FrameRounds rounds = {5, 31, 40, 0};
+    if (bench->quick) rounds = (FrameRounds){3, 5, 3, 0};
     bool ok = true;
     for (u32 size = 0; ok && size < 2; size++) {
         FrameVariant variants[LAYOUT_COUNT] = {0};

@@ -164,10 +164,10 @@ static f64 least_ratio(const Sweep *sweep, u32 slower, u32 faster, u32 first) {
 // --- P1 ---
 
 bool bench_p1(Bench *bench, const char *id) {
-    Sweep sweep = {.id = id, .stop_ms = 4000, .rounds = {5, 25, 20, 2000, 0}};
+    Sweep sweep = {.id = id, .stop_ms = 4000, .rounds = {5, 25, 20, 2000}};
     if (bench->quick) {
         sweep_counts(&sweep, (u32[]){1, 16, 256}, 3);
-        sweep.rounds = (FrameRounds){3, 9, 2, 500, 0};
+        sweep.rounds = (FrameRounds){3, 9, 2, 500};
     } else {
         sweep_counts(&sweep, (u32[]){1, 4, 16, 64, 256}, 5);
     }
@@ -191,12 +191,12 @@ bool bench_p1(Bench *bench, const char *id) {
 // --- K1 ---
 
 bool bench_k1(Bench *bench, const char *id) {
-    Sweep sweep = {.id = id, .stop_ms = 12000, .rounds = {3, 15, 15, 3000, 0}};
+    Sweep sweep = {.id = id, .stop_ms = 12000, .rounds = {3, 15, 15, 3000}};
     if (bench->quick) {
         sweep_counts(&sweep, (u32[]){100, 500, 1000}, 3);
         sweep_add(&sweep, "160x90", PATH_DEFERRED, false, 160, 90);
         sweep_add(&sweep, "320x180", PATH_DEFERRED, false, 320, 180);
-        sweep.rounds = (FrameRounds){3, 7, 3, 1000, 0};
+        sweep.rounds = (FrameRounds){3, 7, 3, 1000};
         sweep.stop_ms = 3000;
     } else {
         sweep_counts(&sweep, (u32[]){100, 200, 500, 1000, 2000, 5000}, 6);
@@ -253,10 +253,10 @@ static bool k3_winners(Bench *bench, const Sweep *sweep) {
 }
 
 bool bench_k3(Bench *bench, const char *id) {
-    Sweep sweep = {.id = id, .stop_ms = 4000, .rounds = {3, 21, 20, 2000, 0}};
+    Sweep sweep = {.id = id, .stop_ms = 4000, .rounds = {3, 21, 20, 2000}};
     if (bench->quick) {
         sweep_counts(&sweep, (u32[]){16, 256, 2048}, 3);
-        sweep.rounds = (FrameRounds){3, 5, 2, 300, 0};
+        sweep.rounds = (FrameRounds){3, 5, 2, 300};
         sweep.stop_ms = 600;
     } else {
         sweep_counts(&sweep, (u32[]){16, 64, 256, 1024, 4096}, 5);

@@ -9,16 +9,19 @@
 #include <string.h>
 
 void bench_print_results(const Bench *bench) {
+    int width = 34;
+    for (u32 i = 0; i < bench->result_count; i++)
+        if (!bench->results[i].in_table) width = MAX(width, (int)strlen(bench->results[i].what));
     const char *last = "";
     bool first = true;
     for (u32 i = 0; i < bench->result_count; i++) {
         const BenchResult *r = &bench->results[i];
         if (r->in_table) continue;
         if (first)
-            printf("%-10s  %-34s  %10s  %10s  %10s  %-4s  %s\n", "row", "what", "median", "p10",
-                   "p90", "unit", "ratio");
+            printf("%-10s  %-*s  %10s  %10s  %10s  %-4s  %s\n", "row", width, "what", "median",
+                   "p10", "p90", "unit", "ratio");
         first = false;
-        printf("%-10s  %-34s  %10.4g  %10.4g  %10.4g  %-4s", strcmp(last, r->id) ? r->id : "",
+        printf("%-10s  %-*s  %10.4g  %10.4g  %10.4g  %-4s", strcmp(last, r->id) ? r->id : "", width,
                r->what, r->median, r->p10, r->p90, r->unit);
         if (r->ratio > 0.0) printf("  %.2f", r->ratio);
         putchar('\n');
