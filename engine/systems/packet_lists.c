@@ -84,6 +84,7 @@ static RenderSettings keep_settings(const RenderSettings *asked, const RenderSet
 
 const Packet *packet_relist(const Packet *packet, const RenderSettings *settings, Arena *out,
                             Arena *scratch) {
+    LUZ_ASSERT(out != scratch);
     u64 mark = arena_mark(scratch);
     RenderSettings merged = keep_settings(settings, &packet->settings);
     FrameRecord frame = packet->frame;

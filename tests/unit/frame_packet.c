@@ -14,11 +14,48 @@ static const Packet *make_packet(SystemsFixture *f, u32 count) {
     return fixture_packet(f, ENTITY_NONE, settings_default(), 320, 200, 0);
 }
 
+#define NEED(x)                                                                                    \
+    if (!(x)) return #x
+
+// Walks the hierarchy over the lights as a shader does: every node once, every light once.
+static const char *walk_trees(const Packet *p) {
+    const GridNode *nodes = PACKET_DATA(p, grid_nodes, GridNode);
+    const u32 *indices = PACKET_DATA(p, light_indices, u32);
+    u32 points = p->frame.counts[0], spots = p->frame.counts[1], steps = 0, lights = 0;
+    NEED(p->frame.counts[3] == p->grid_nodes.count);
+    if (p->frame.counts[3] == 0) return NULL;
+    for (u32 class = 0; class < 2; class ++) {
+        u32 stack[256], depth = 0, begin = class ? points : 0,
+                        end = class ? points + spots : points;
+        if (begin == end) continue;
+        stack[depth++] = class ? p->frame.counts3[2] : 0;
+        while (depth > 0) {
+            u32 node = stack[--depth], first, bits;
+            NEED(node < p->grid_nodes.count && ++steps <= p->grid_nodes.count);
+            memcpy(&first, &nodes[node].low[3], sizeof first);
+            memcpy(&bits, &nodes[node].high[3], sizeof bits);
+            u32 count = bits & 0x7FFFFFFF;
+            NEED(count >= 1 && count <= GRID_NODE_WIDTH);
+            for (u32 child = first; child < first + count; child++) {
+                if (!(bits >> 31)) {
+                    NEED(depth < COUNT_OF(stack) && child > node);
+                    stack[depth++] = child;
+                    continue;
+                }
+                NEED((u64)p->frame.counts3[3] + child < p->light_indices.count);
+                u32 light = indices[p->frame.counts3[3] + child];
+                NEED(light >= begin && light < end);
+                lights++;
+            }
+        }
+    }
+    NEED(lights == points + spots);
+    return NULL;
+}
+
 // Reads what a renderer reads, asking before each access. Returns what is wrong.
 static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 texture_count) {
     const Packet *p = (const Packet *)block;
-#define NEED(x)                                                                                    \
-    if (!(x)) return #x
 #define X(name, Type)                                                                              \
     NEED(p->name.offset >= sizeof(Packet) && p->name.offset % CACHE_LINE == 0);                    \
     NEED((u64)p->name.offset + (u64)p->name.count * sizeof(Type) <= size);
@@ -64,10 +101,20 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
     u32 side_px = settings_tile_px(&p->settings);
     u32 tiles_x = (p->width_px + side_px - 1) / side_px;
     u32 tiles_y = (p->height_px + side_px - 1) / side_px;
-    NEED(p->frame.grid[0] == tiles_x && p->cells.count == tiles_x * tiles_y);
+    u32 slices = p->frame.grid[2];
+    NEED(p->frame.grid[0] == tiles_x && p->frame.grid[1] == tiles_y && p->frame.grid[3] == side_px);
+    NEED(slices == 1 || (settings_clustered(&p->settings) && slices <= CLUSTER_SLICES_CAP));
+    // A path that reads cells has them.
+    NEED(p->cells.count == tiles_x * tiles_y * slices ||
+         (p->cells.count == 0 && settings_lists_on_device(&p->settings) &&
+          p->blend_draws.count == 0));
+    NEED(p->frame.counts3[0] <= p->frame.counts[0] && p->frame.counts3[1] <= p->frame.counts[1]);
+    const char *tree = walk_trees(p);
+    if (tree) return tree;
     for (u32 t = 0; t < p->cells.count; t++) {
         const u32 *list = PACKET_DATA(p, cells, CellRecord)[t].list;
         NEED((u64)list[0] + list[1] + list[2] <= p->light_indices.count);
+        NEED((list[3] & 0xFFFF) <= list[1] && list[3] >> 16 <= list[2]);
         const u32 *indices = PACKET_DATA(p, light_indices, u32) + list[0];
         for (u32 i = 0; i < list[1]; i++) NEED(indices[i] < p->frame.counts[0]);
         for (u32 i = list[1]; i < list[1] + list[2]; i++) {
@@ -154,14 +201,10 @@ static void damage(u32 *words, u64 word_count, u64 seed, u32 round) {
     }
 }
 
-TEST(frame_packet, damaged_packets_are_refused_or_safe) {
-    const u64 seed = 0xBADF00D;
-    printf("seed %llx\n", (unsigned long long)seed);
-    SystemsFixture *f = systems_fixture_create(1);
-    const Packet *good = make_packet(f, 24);
+static void damage_many(const Packet *good, u64 seed, u32 rounds) {
     u64 size = good->size;
     u32 refused = 0, taken = 0;
-    for (u32 round = 0; round < 20000; round++) {
+    for (u32 round = 0; round < rounds; round++) {
         u8 *copy = malloc(size); // an allocation of its own: the sanitizer sees a byte too far
         memcpy(copy, good, size);
         damage((u32 *)copy, size / 4, seed, round);
@@ -176,7 +219,69 @@ TEST(frame_packet, damaged_packets_are_refused_or_safe) {
         free(copy);
     }
     printf("%u refused, %u harmless\n", refused, taken);
-    assert_true(refused > 5000 && taken > 500);
+    assert_true(refused > rounds / 4 && taken > rounds / 40);
+}
+
+TEST(frame_packet, damaged_packets_are_refused_or_safe) {
+    const u64 seed = 0xBADF00D;
+    printf("seed %llx\n", (unsigned long long)seed);
+    SystemsFixture *f = systems_fixture_create(1);
+    damage_many(make_packet(f, 24), seed, 20000);
+    systems_fixture_destroy(f);
+}
+
+// Clusters made on the device, for so many lights that there is a hierarchy over them.
+static const Packet *make_clusters(SystemsFixture *f, u32 light_count) {
+    fixture_fill(f, 0xF177, 24);
+    for (u32 i = 0; i < light_count; i++) {
+        Vec3 p = {random_range(9, 1, i, -9, 9), random_range(9, 2, i, -5, 5),
+                  random_range(9, 3, i, -30, -1)};
+        fixture_spawn_light(f, i % 4 ? LIGHT_POINT : LIGHT_SPOT, p, 0.8f);
+    }
+    systems_settle(&f->systems, &f->context);
+    RenderSettings settings = settings_default();
+    settings.manager = 0;
+    settings.path = PATH_CLUSTERED_FORWARD;
+    settings.tile_px = TILE_64;
+    settings.clusters = CLUSTERS_GPU;
+    return fixture_packet(f, ENTITY_NONE, settings, 320, 200, 0);
+}
+
+TEST(frame_packet, damaged_hierarchies_are_refused_or_safe) {
+    const u64 seed = 0xBADF00E;
+    printf("seed %llx\n", (unsigned long long)seed);
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *p = make_clusters(f, 1100);
+    assert_true(p->grid_nodes.count > 100 && p->cells.count > 0 && p->frame.grid[2] > 1);
+    assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_null(check_plainly((const u8 *)p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    damage_many(p, seed, 4000);
+    // Where chance seldom hits: every node's links, and the order.
+    Packet *copy = malloc(p->size);
+    memcpy(copy, p, p->size);
+    GridNode *nodes = PACKET_WRITE(copy, grid_nodes, GridNode);
+    u32 *indices = PACKET_WRITE(copy, light_indices, u32);
+    for (u32 i = 0; i < copy->grid_nodes.count * 2; i++) {
+        f32 *link = i & 1 ? &nodes[i / 2].high[3] : &nodes[i / 2].low[3];
+        u32 kept, value;
+        memcpy(&kept, link, sizeof kept);
+        for (u32 step = 0; step < 4; step++) {
+            value = step < 2 ? kept + (step ? 1 : 0xFFFFFFFFu) : step == 2 ? 0xFFFFFFFFu : 1u << 30;
+            memcpy(link, &value, sizeof value);
+            if (!packet_validate(copy, copy->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT))
+                fail_msg("node %u: link %u instead of %u was taken", i / 2, value, kept);
+        }
+        memcpy(link, &kept, sizeof kept);
+    }
+    for (u32 i = copy->frame.counts3[3]; i < copy->light_indices.count; i++) {
+        u32 kept = indices[i];
+        indices[i] = copy->lights.count - 1; // the dummy
+        assert_non_null(
+            packet_validate(copy, copy->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+        indices[i] = kept;
+    }
+    assert_null(packet_validate(copy, copy->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    free(copy);
     systems_fixture_destroy(f);
 }
 
@@ -229,6 +334,7 @@ TEST(frame_packet, each_index_is_checked) {
     TOO_LARGE(cells[p->cells.count - 1].list[0], p->light_indices.count + 1);
     TOO_LARGE(cells[p->cells.count / 2].list[1], cells[p->cells.count / 2].list[1] + 1);
     TOO_LARGE(cells[p->cells.count / 2].list[2], cells[p->cells.count / 2].list[2] + 1);
+    TOO_LARGE(cells[p->cells.count / 2].list[3], cells[p->cells.count / 2].list[3] + 1);
     PacketText *text = PACKET_WRITE(p, texts, PacketText);
     TOO_LARGE(text->offset, p->characters.count + 1);
     TOO_LARGE(text->length, p->characters.count + 1);
