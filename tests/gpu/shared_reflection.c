@@ -54,7 +54,7 @@ static const SharedStruct structs[] = {
 
 // Structs that no shader declares: instances come as vertex attributes (engine/gpu/pipeline.c takes
 // their offsets from the C struct).
-static const char *const unused_structs[] = {"InstanceRecord", "TileDepthRecord", "GridNode", NULL};
+static const char *const unused_structs[] = {"InstanceRecord", NULL};
 
 // Which binding belongs to which block, or to which name of an image.
 static const struct {
@@ -74,6 +74,12 @@ static const struct {
     {"IndexBuffer", 0, BINDING_LIGHT_INDICES},
     {"gbuffer_0", 0, BINDING_GBUFFER_0},
     {"gbuffer_1", 0, BINDING_GBUFFER_1},
+    {"gbuffer_2", 0, BINDING_GBUFFER_2},
+    {"gbuffer_3", 0, BINDING_GBUFFER_3},
+    {"gbuffer_4", 0, BINDING_GBUFFER_4},
+    {"palette", 0, BINDING_PALETTE},
+    {"falloff", 0, BINDING_ATTENUATION},
+    {"normal_z", 0, BINDING_NORMAL_Z},
     {"gbuffer_depth", 0, BINDING_DEPTH},
     {"shadow_map", 0, BINDING_SHADOW_MAP},
     {"ldr", 0, BINDING_LDR},
