@@ -103,8 +103,8 @@ typedef struct MeshVertex {
 #define SPEC_LIGHT_BRANCH  23 // deferred_light: stop outside range or cone
 #define SPEC_SAMPLES       24 // samples a pixel: 1 or 4
 #define SPEC_CLUSTER_NORMALS 25 // 1 = cluster keys have bits of the normal's direction
-#define SPEC_VERTEX_LIGHTING 26 // forward shading: local lights come from the vertices
-#define SPEC_POST          27 // of a post pass: a switch of its own (see shaders/post_*.frag)
+#define SPEC_VERTEX_LIGHTING 26 // forward shading: PacketDraw.vertex_lit
+#define SPEC_POST          27 // of a post pass: a switch of its own (post_fog.frag, split.frag, tonemap.frag)
 #define SPEC_COUNT         28
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
@@ -129,10 +129,6 @@ typedef struct MeshVertex {
 #define DEBUG_TILE_DEPTH  15
 #define DEBUG_CLUSTERS    16
 
-// SPEC_POST of copy.frag: what is copied.
-#define COPY_HDR 0
-#define COPY_LDR 1
-
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
 
@@ -141,6 +137,7 @@ typedef struct MeshVertex {
 #define LIGHT_CLASSES     4
 // Lights of a tile that a subgroup keeps after culling; if more survive it shades the whole list.
 #define SURVIVORS_CAP     512
+#define MULTIPASS_LIGHTS  8 // lights of a group of path `multipass`
 #define MATERIALS_CAP     256
 #define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
@@ -156,7 +153,6 @@ typedef struct MeshVertex {
 #define GRID_COUNTER_COUNT     8
 #define GRID_NODE_WIDTH        8 // children of a node of the light hierarchy
 #define CLUSTER_SLICES_CAP     256
-
 // Places in CLUSTERS and, for clusters made on the device, in LIST_CELLS.
 #define CLUSTER_EMPTY          0 // of background pixels: no lights
 #define CLUSTER_ALL            1 // of those that found no room: all lights
@@ -164,6 +160,7 @@ typedef struct MeshVertex {
 // Key of an occupied cluster: tile << 11 | direction of the normal (0..5, see cluster_keys.glsl)
 // << 8 | slice.
 #define CLUSTER_TILE_SHIFT     11
+
 SHARED_STRUCT(FrameRecord) {
     mat4 view_projection; // world to clip, reversed depth, infinite far
     mat4 view;            // world to view
@@ -190,13 +187,15 @@ SHARED_STRUCT(FrameRecord) {
                           // polynomial's table
     uvec4 counts;         // points, spots, directionals, clusters' hierarchy nodes (0 = none)
     uvec4 counts2;        // materials, instances, lights of the dummy index, tick
-    uvec4 counts3;        // points with a highlight, spots with a highlight, node of the spots' root, 0
+    uvec4 counts3;        // points with a highlight, spots with a highlight, node of the spots' root
+                          // (0 if there are no points), place of the hierarchy's order in the indices
     uvec4 grid;           // cells in x, y, z (1 = tiles), side in px
 } SHARED_END(FrameRecord)
 
 SHARED_STRUCT(InstanceRecord) {
     vec4 world[3];   // rows of the affine world matrix
-    uvec4 ids;       // material index, drawable's entity, 0, 0
+    uvec4 ids;       // material index, drawable's entity, bits of the share (0..1) of local light
+                     // that comes from the vertices, 0
 } SHARED_END(InstanceRecord)
 
 SHARED_STRUCT(MaterialRecord) {
@@ -237,14 +236,16 @@ SHARED_STRUCT(CellRecord) {
 SHARED_STRUCT(TileDepthRecord) {
     vec4 range;      // x near, y far: view depth in m; z 32 / (far - near)
     uvec4 mask;      // x: bit of each occupied slice of 32 between near and far; y: pixels covered
+                     // (by any sample); of clusters: z how many are in the tile, w the first's place
+                     // (CLUSTER_ALL: they found no room)
 } SHARED_END(TileDepthRecord)
 
 // Hierarchy over lights in Morton order (systems/light_hierarchy.c): GRID_NODE_WIDTH children a
-                     // (by any sample); of clusters: z how many are in the tile, w the first's place
-                     // (CLUSTER_ALL: they found no room)
-// node, leaves are lights. The points' root is node 0, the spots' the node counts3.z says.
+// node (the last of a level may have fewer), leaves are lights: light_indices[counts3.w + place].
+// Points have a tree of their own with node 0 as its root, then spots with the root that counts3.z
+// says; a tree's levels follow each other from the root down.
 SHARED_STRUCT(GridNode) {
-    vec4 low;        // view-space box; w: bits of the first child (node, or index into the order)
+    vec4 low;        // view-space box; w: bits of the first child (node, or place in the order)
     vec4 high;       // w: bits of the count of children; the highest bit set = children are lights
 } SHARED_END(GridNode)
 

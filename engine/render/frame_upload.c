@@ -19,10 +19,13 @@ static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame",
 #undef X
 };
 static GpuFormat target_format(const Renderer *renderer, RenderResource id) {
+    if (id == RESOURCE_DEPTH) return renderer->depth_format;
     if (id >= RESOURCE_GBUFFER_0 && id <= RESOURCE_GBUFFER_4)
         return layout_table[renderer->layout].targets[id - RESOURCE_GBUFFER_0];
     return resource_formats[id];
 }
+
+static bool is_ms(RenderResource id) { return id == RESOURCE_HDR_MS || id == RESOURCE_DEPTH_MS; }
 
 static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 height) {
     if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
@@ -35,6 +38,7 @@ static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 
                                                             .format = target_format(renderer, id),
                                                             .width = width,
                                                             .height = height,
+                                                            .samples = is_ms(id) ? 4 : 1,
                                                             .render_target = true,
                                                             .sampled = true,
                                                             .storage = id == RESOURCE_HDR});
@@ -42,16 +46,58 @@ static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 
     return renderer->targets[id].id != 0;
 }
 
+// How many samples the packet's path draws, and targets for them. One sample: whatever multisampled
+// targets there are stay, so that a path can be changed to and fro; a 1 x 1 depth at least, for its
+// binding.
+static bool samples_resize(Renderer *renderer, const Packet *packet) {
+    const RenderSettings *s = &packet->settings;
+    bool wanted = s->msaa == MSAA_4 && path_of(packet) == &path_table[s->path] &&
+                  (s->path == PATH_FORWARD || s->path == PATH_TILED_FORWARD ||
+                   s->path == PATH_CLUSTERED_FORWARD);
+    renderer->samples = 1;
+    if (!gpu_info(renderer->gpu)->samples_4) {
+        static bool told;
+        if (wanted && !told)
+            LOG(RENDER_LIMIT, "this device has no 4 samples a pixel: msaa=4 draws as msaa=1");
+        told |= wanted;
+        return true;
+    }
+    u32 width = wanted ? packet->width_px : MAX(renderer->ms_width_px, 1);
+    u32 height = wanted ? packet->height_px : MAX(renderer->ms_height_px, 1);
+    if (renderer->ms_width_px != width || renderer->ms_height_px != height) {
+        bool ok = target_create(renderer, RESOURCE_DEPTH_MS, width, height) &&
+                  target_create(renderer, RESOURCE_HDR_MS, width, height);
+        renderer->ms_width_px = ok ? width : 0;
+        renderer->ms_height_px = ok ? height : 0;
+        if (!ok) return false;
+    }
+    if (wanted) renderer->samples = 4;
+    return true;
+}
+
 static bool targets_resize(Renderer *renderer, const Packet *packet) {
     bool ok = true;
-    bool new_layout = renderer->layout != packet->settings.layout;
+    // A depth with a stencil costs more to test, on the software driver: only for who uses it.
+    bool stencil = packet->settings.path == PATH_DEFERRED_VOLUMES &&
+                   packet->settings.light_volume == VOLUME_STENCIL;
+    GpuFormat depth_format = stencil ? GPU_FORMAT_D32F_S8 : GPU_FORMAT_D32F;
+    bool new_size = renderer->gbuffer_width_px != packet->width_px ||
+                    renderer->gbuffer_height_px != packet->height_px;
+    bool new_depth = renderer->depth_format != depth_format || new_size;
+    bool new_gbuffer = renderer->layout != packet->settings.layout || new_size;
+    renderer->depth_format = depth_format;
     renderer->layout = packet->settings.layout;
-    for (u32 i = 0; new_layout && i < 5; i++)
+    for (u32 i = 0; new_gbuffer && i < 5; i++)
         ok = ok &&
              target_create(renderer, RESOURCE_GBUFFER_0 + i, packet->width_px, packet->height_px);
+    if (ok && new_depth)
+        ok = target_create(renderer, RESOURCE_DEPTH, packet->width_px, packet->height_px);
+    renderer->gbuffer_width_px = ok ? packet->width_px : 0;
+    renderer->gbuffer_height_px = ok ? packet->height_px : 0;
     if (renderer->width_px != packet->width_px || renderer->height_px != packet->height_px) {
         for (u32 id = 0; id < RESOURCE_FIRST_BUFFER; id++)
-            if (id != RESOURCE_SHADOW_MAP)
+            if (id != RESOURCE_SHADOW_MAP && !is_ms(id) &&
+                !(id >= RESOURCE_GBUFFER_0 && id <= RESOURCE_DEPTH))
                 ok = ok && target_create(renderer, id, packet->width_px, packet->height_px);
         if (renderer->readback.id) gpu_destroy_buffer(renderer->gpu, renderer->readback);
         renderer->readback = gpu_create_buffer(
@@ -63,6 +109,7 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
         renderer->width_px = ok ? packet->width_px : 0;
         renderer->height_px = ok ? packet->height_px : 0;
     }
+    ok = ok && samples_resize(renderer, packet);
     // Every binding is always written, so there is a shadow map even when nothing casts.
     u32 shadow_size = MAX(packet->shadow_size_px, 1);
     if (ok && renderer->shadow_size_px != shadow_size &&
@@ -102,7 +149,10 @@ static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u6
 }
 
 static bool frame_group_update(Renderer *renderer) {
-    if (!renderer->frame_group_stale && renderer->frame_group.id) return true;
+    if (renderer->frame_group_stale) renderer->bindings_version++;
+    renderer->frame_group_stale = false;
+    if (renderer->frame_group_version == renderer->bindings_version && renderer->frame_group.id)
+        return true;
     Gpu *gpu = renderer->gpu;
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
     GpuBindGroupDesc desc = {.label = "frame", .layout = renderer->frame_layout};
@@ -149,6 +199,7 @@ static bool frame_group_update(Renderer *renderer) {
         {BINDING_GBUFFER_3, RESOURCE_GBUFFER_3, renderer->sampler_nearest},
         {BINDING_GBUFFER_4, RESOURCE_GBUFFER_4, renderer->sampler_nearest},
         {BINDING_DEPTH, RESOURCE_DEPTH, renderer->sampler_nearest},
+        {BINDING_DEPTH_MS, RESOURCE_DEPTH_MS, renderer->sampler_nearest},
         {BINDING_SHADOW_MAP, RESOURCE_SHADOW_MAP, renderer->sampler_shadow},
         {BINDING_HDR, RESOURCE_HDR, renderer->sampler_nearest},
         {BINDING_HDR_STORAGE, RESOURCE_HDR, {0}},
@@ -163,11 +214,6 @@ static bool frame_group_update(Renderer *renderer) {
                                         ? renderer->targets[images[i].resource]
                                         : renderer->black,
                          .sampler = images[i].sampler};
-    // Stand-ins until somebody fills them.
-    static const u32 stand_ins[] = {BINDING_DEPTH_MS};
-    for (u32 i = 0; i < COUNT_OF(stand_ins); i++)
-        desc.bindings[stand_ins[i]] =
-            (GpuBinding){.texture = renderer->white, .sampler = renderer->sampler_nearest};
     const struct {
         u32 binding;
         GpuTexture texture;
@@ -176,14 +222,14 @@ static bool frame_group_update(Renderer *renderer) {
                    {BINDING_ATTENUATION, renderer->falloff, renderer->sampler_linear},
                    {BINDING_NORMAL_Z, renderer->normal_z, renderer->sampler_nearest}};
     for (u32 i = 0; i < COUNT_OF(lookups); i++)
-        desc.bindings[lookups[i].binding] = (GpuBinding){
-            .texture = lookups[i].texture.id ? lookups[i].texture : renderer->white,
-            .sampler = lookups[i].sampler};
+        desc.bindings[lookups[i].binding] =
+            (GpuBinding){.texture = lookups[i].texture.id ? lookups[i].texture : renderer->white,
+                         .sampler = lookups[i].sampler};
     desc.bindings[BINDING_OVERLAY] = (GpuBinding){
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};
     renderer->frame_group = gpu_create_bind_group(gpu, &desc);
-    renderer->frame_group_stale = false;
+    renderer->frame_group_version = renderer->bindings_version;
     return renderer->frame_group.id != 0;
 }
 
@@ -199,19 +245,68 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
         return false;
     FRAME_BUFFERS(X)
 #undef X
-    return text_upload(renderer, packet) && frame_group_update(renderer);
+    return debug_view_upload(renderer, packet) && text_upload(renderer, packet) &&
+           frame_group_update(renderer);
 }
 
-void frame_upload_destroy(Renderer *renderer) {
+static void exchange(void *a, void *b, u64 size) {
+    u8 kept[sizeof(FrameSet)];
+    LUZ_ASSERT(size <= sizeof kept);
+    memcpy(kept, a, size);
+    memcpy(a, b, size);
+    memcpy(b, kept, size);
+}
+
+void frame_sets_exchange(Renderer *renderer) {
+    FrameSet *parked = &renderer->parked;
+#define EXCHANGE(a, b) exchange(&(a), &(b), sizeof(a))
+#define FIELD(name)    EXCHANGE(renderer->name, parked->name)
+    FIELD(buffers);
+    FIELD(frame_group);
+    FIELD(frame_group_version);
+    FIELD(layout);
+    FIELD(depth_format);
+    FIELD(gbuffer_width_px);
+    FIELD(gbuffer_height_px);
+    FIELD(text_vertices);
+    FIELD(text_indices);
+    FIELD(text_ends);
+    FIELD(line_vertices);
+    FIELD(line_vertex_count);
+    for (u32 i = 0; i < COUNT_OF(parked->gbuffer); i++) {
+        EXCHANGE(renderer->targets[RESOURCE_GBUFFER_0 + i], parked->gbuffer[i]);
+        EXCHANGE(renderer->usage[RESOURCE_GBUFFER_0 + i], parked->gbuffer_usage[i]);
+    }
+    EXCHANGE(renderer->targets[RESOURCE_LDR], renderer->targets[RESOURCE_LDR_OTHER]);
+    EXCHANGE(renderer->usage[RESOURCE_LDR], renderer->usage[RESOURCE_LDR_OTHER]);
+#undef FIELD
+#undef EXCHANGE
+}
+
+static void frame_set_destroy(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
     for (u32 i = 0; i < FRAME_BUFFER_COUNT; i++)
         if (renderer->buffers[i].id) gpu_destroy_buffer(gpu, renderer->buffers[i]);
+    GpuBuffer others[] = {renderer->text_vertices, renderer->text_indices, renderer->line_vertices};
+    for (u32 i = 0; i < COUNT_OF(others); i++)
+        if (others[i].id) gpu_destroy_buffer(gpu, others[i]);
+    for (u32 id = RESOURCE_GBUFFER_0; id <= RESOURCE_DEPTH; id++) {
+        if (renderer->targets[id].id) gpu_destroy_texture(gpu, renderer->targets[id]);
+        renderer->targets[id] = (GpuTexture){0};
+    }
+}
+
+void frame_upload_destroy(Renderer *renderer) {
+    Gpu *gpu = renderer->gpu;
+    frame_set_destroy(renderer);
+    frame_sets_exchange(renderer);
+    frame_set_destroy(renderer);
     for (u32 i = 0; i < RESOURCE_COUNT; i++)
         if (renderer->targets[i].id) gpu_destroy_texture(gpu, renderer->targets[i]);
     for (u32 i = 0; i < RESOURCE_COUNT; i++)
         if (renderer->device_buffers[i].id) gpu_destroy_buffer(gpu, renderer->device_buffers[i]);
     if (renderer->readback.id) gpu_destroy_buffer(gpu, renderer->readback);
+    device_lists_destroy(renderer);
     lookups_destroy(renderer);
 }
-    device_lists_destroy(renderer);

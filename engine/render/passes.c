@@ -12,7 +12,30 @@ void bind_frame(const PassContext *c, GpuPipeline pipeline) {
     gpu_cmd_bind_group(c->cmd, 0, c->renderer->frame_group);
 }
 
-void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, bool alpha_mask) {
+// A list has few kinds of pipelines: looked up once each.
+#define VARIANTS (2 * 4 * 3)
+
+static GpuPipeline variant_pipeline(const PassContext *c, PipelineKind kind, bool alpha_mask,
+                                    const PacketMaterial *material, u32 vertex_lit,
+                                    GpuPipeline cache[VARIANTS]) {
+    u32 textures = (material->albedo_texture ? 1 : 0) | (material->normal_texture ? 2 : 0);
+    bool double_sided = material->double_sided != 0;
+    GpuPipeline *slot = &cache[(vertex_lit * 4 + textures) * 2 + double_sided];
+    if (slot->id) return *slot;
+    u32 before = c->renderer->pipeline_count;
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind,
+                                        (PipelineVariant){.alpha_mask = alpha_mask,
+                                                          .double_sided = double_sided,
+                                                          .textures = textures,
+                                                          .vertex_lit = vertex_lit});
+    // Fewer than before: the renderer emptied its cache, which ends what is known here.
+    if (c->renderer->pipeline_count < before) memset(cache, 0, VARIANTS * sizeof *cache);
+    *slot = pipeline;
+    return pipeline;
+}
+
+void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection section, bool alpha_mask,
+                    const void *push, u32 push_size) {
     if (section.count == 0) return;
     Renderer *r = c->renderer;
     const PacketDraw *draws = (const PacketDraw *)((const u8 *)c->packet + section.offset);
@@ -20,21 +43,22 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
     gpu_cmd_bind_vertices(c->cmd, 0, r->vertices, 0);
     gpu_cmd_bind_vertices(c->cmd, 1, r->buffers[FRAME_BUFFER_INSTANCES], 0);
     gpu_cmd_bind_indices(c->cmd, r->indices, false);
-    GpuPipeline bound = {0};
+    GpuPipeline bound = {0}, cache[VARIANTS] = {{0}};
     u32 bound_material = UINT32_MAX;
-    for (u32 i = 0; i < section.count; i++) {
-        const PacketDraw *draw = &draws[i];
+    bool by_vertex =
+        c->packet->settings.vertex_lighting && c->packet->frame.vertex_lighting[0] > 0.0f;
+    // Warming up, what may be lit by its vertices in another frame is so now.
+    u32 variants = r->is_warming_up && by_vertex ? 3 : 1;
+    for (u32 i = 0; i < section.count * variants; i++) {
+        const PacketDraw *draw = &draws[i / variants];
         if (draw->mesh >= r->mesh_count || r->meshes[draw->mesh].lods[0].index_count == 0) continue;
         const PacketMaterial *material = &materials[draw->material];
-        GpuPipeline pipeline =
-            pipeline_get(r, c->packet, kind,
-                         (PipelineVariant){.alpha_mask = alpha_mask,
-                                           .double_sided = material->double_sided != 0,
-                                           .textures = (material->albedo_texture ? 1 : 0) |
-                                                       (material->normal_texture ? 2 : 0)});
+        u32 vertex_lit = variants > 1 ? i % variants : by_vertex ? draw->vertex_lit : 0;
+        GpuPipeline pipeline = variant_pipeline(c, kind, alpha_mask, material, vertex_lit, cache);
         if (!pipeline.id) continue;
         if (pipeline.id != bound.id) {
             bind_frame(c, pipeline);
+            if (push_size && !bound.id) gpu_cmd_push(c->cmd, push, push_size);
             bound = pipeline;
             bound_material = UINT32_MAX;
         }
@@ -51,12 +75,35 @@ void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, b
     }
 }
 
+void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, bool alpha_mask) {
+    draw_list_with(c, kind, section, alpha_mask, NULL, 0);
+}
+
 void draw_fullscreen(const PassContext *c, PipelineKind kind) {
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
+    draw_fullscreen_with(c, kind, 0, NULL, 0);
+}
+
+void draw_fullscreen_with(const PassContext *c, PipelineKind kind, u32 post, const f32 *push,
+                          u32 push_count) {
+    GpuPipeline pipeline =
+        pipeline_get(c->renderer, c->packet, kind, (PipelineVariant){.post = post});
     if (!pipeline.id) return;
     bind_frame(c, pipeline);
+    if (push_count) gpu_cmd_push(c->cmd, push, push_count * (u32)sizeof(f32));
     gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
     c->renderer->stats.draw_calls++;
+}
+
+GpuTarget color_target(const PassContext *c, bool clear) {
+    const Renderer *r = c->renderer;
+    return (GpuTarget){.texture = r->targets[r->samples > 1 ? RESOURCE_HDR_MS : RESOURCE_HDR],
+                       .clear = clear};
+}
+
+GpuTarget depth_target(const PassContext *c, bool clear) {
+    const Renderer *r = c->renderer;
+    return (GpuTarget){.texture = r->targets[r->samples > 1 ? RESOURCE_DEPTH_MS : RESOURCE_DEPTH],
+                       .clear = clear};
 }
 
 void begin(const PassContext *c, const GpuRendering *rendering) {
@@ -66,28 +113,58 @@ void begin(const PassContext *c, const GpuRendering *rendering) {
     gpu_cmd_begin_rendering(c->cmd, &sized);
 }
 const PathRow path_table[PATH_COUNT] = {
-    [PATH_FORWARD] = {"forward", {&shadow_pass, &forward_pass, &over_pass, &tonemap_pass}},
-    [PATH_MULTIPASS] = {"multipass", {&shadow_pass, &forward_pass, &over_pass, &tonemap_pass}},
+    [PATH_FORWARD] = {"forward",
+                      {&shadow_pass, &forward_pass, &over_pass, &samples_pass, &post_pass}},
+    [PATH_MULTIPASS] = {"multipass",
+                        {&shadow_pass, &prepass_pass, &multipass_pass, &resolve_pass, &over_pass,
+                         &post_pass}},
     [PATH_DEFERRED] = {"deferred",
                        {&shadow_pass, &gbuffer_pass, &deferred_pass, &resolve_pass, &over_pass,
-                        &tonemap_pass}},
+                        &post_pass}},
     [PATH_DEFERRED_VOLUMES] = {"deferred_volumes",
-                               {&shadow_pass, &gbuffer_pass, &deferred_pass, &resolve_pass,
-                                &over_pass, &tonemap_pass}},
+                               {&shadow_pass, &gbuffer_pass, &base_pass, &volumes_pass,
+                                &volumes_stencil_pass, &resolve_pass, &over_pass, &post_pass}},
     [PATH_TILED_DEFERRED] = {"tiled_deferred",
-                             {&shadow_pass, &gbuffer_pass, &tiled_pass, &over_pass, &tonemap_pass}},
+                             {&shadow_pass, &gbuffer_pass, TILE_LIST_PASSES, &tiled_pass,
+                              &over_pass, &post_pass}},
     [PATH_TILED_FORWARD] = {"tiled_forward",
-                            {&shadow_pass, &forward_pass, &over_pass, &tonemap_pass}},
+                            {&shadow_pass, &prepass_pass, TILE_LIST_PASSES, &forward_lists_pass,
+                             &over_pass, &samples_pass, &post_pass}},
     [PATH_CLUSTERED_DEFERRED] = {"clustered_deferred",
-                                 {&shadow_pass, &gbuffer_pass, &tiled_pass, &over_pass,
-                                  &tonemap_pass}},
+                                 {&shadow_pass, &gbuffer_pass, CLUSTER_LIST_PASSES, &clustered_pass,
+                                  &over_pass, &post_pass}},
     [PATH_CLUSTERED_FORWARD] = {"clustered_forward",
-                                {&shadow_pass, &forward_pass, &over_pass, &tonemap_pass}},
+                                {&shadow_pass, &prepass_pass, CLUSTER_LIST_PASSES,
+                                 &forward_lists_pass, &over_pass, &samples_pass, &post_pass}},
 };
-const PathRow debug_path = {"debug view", {&shadow_pass, &gbuffer_pass, &debug_pass}};
+static const PathRow debug_path = {
+    "debug view",
+    {&shadow_pass, &gbuffer_pass, TILE_LIST_PASSES, CLUSTER_LIST_PASSES, &debug_pass}};
+static const PathRow overdraw_path = {"overdraw", {&overdraw_pass, &overdraw_show_pass}};
+
+const PathRow *path_of(const Packet *packet) {
+    switch (packet->settings.view) {
+    case VIEW_FINAL:
+    case VIEW_LIGHT_RECTS: // these lie over the final picture: debug_overlay_pass (debug_views.c)
+    case VIEW_LIGHT_VOLUMES:
+    case VIEW_LIGHT_STATES:
+    case VIEW_LIGHT_LODS:
+    case VIEW_OCCLUDERS:
+        return &path_table[packet->settings.path];
+    case VIEW_OVERDRAW:
+    case VIEW_LAYERS:
+        return &overdraw_path;
+    default:
+        return &debug_path;
+    }
+}
 
 void pass_run(const PassContext *c, const Pass *pass) {
     if (pass->needed && !pass->needed(c)) return;
+    if (pass->expand) {
+        pass->expand(c);
+        return;
+    }
     Renderer *r = c->renderer;
     GpuBarrier barriers[PASS_USES_CAP];
     u32 barrier_count = 0;

@@ -25,27 +25,41 @@ void bind_frame(const PassContext *c, GpuPipeline pipeline);
 // Begins rendering at the packet's resolution.
 void begin(const PassContext *c, const GpuRendering *rendering);
 void draw_fullscreen(const PassContext *c, PipelineKind kind);
+// The same with a switch of its own (SPEC_POST) and numbers for the shader: floats, at most
+// PUSH_SIZE bytes.
+void draw_fullscreen_with(const PassContext *c, PipelineKind kind, u32 post, const f32 *push,
+                          u32 push_count);
+
+// Targets of a path that may be multisampled.
+GpuTarget color_target(const PassContext *c, bool clear);
+GpuTarget depth_target(const PassContext *c, bool clear);
 
 // passes_geometry.c
-extern const Pass shadow_pass, gbuffer_pass, forward_pass, over_pass;
+extern const Pass shadow_pass, gbuffer_pass, over_pass;
+// passes_forward.c
+extern const Pass prepass_pass, forward_pass, forward_lists_pass, multipass_pass, samples_pass;
+// volumes.c
+extern const Pass base_pass, volumes_pass, volumes_stencil_pass;
 // passes_lighting.c
 extern const Pass deferred_pass, resolve_pass, tiled_pass;
-// post.c
-extern const Pass tonemap_pass, debug_pass;
-
-#endif
 // passes_lists.c: lists of the path's cells, between the depth buffer and whoever shades; passes
 // that the settings do not ask for are passed over.
 extern const Pass tile_depth_pass, list_refine_pass, list_count_pass, list_scan_pass,
     list_fill_pass, list_report_pass;
 extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, cluster_count_pass,
-    cluster_list_scan_pass, cluster_fill_pass, clustered_pass;
+    cluster_list_scan_pass, cluster_fill_pass, cluster_report_pass, clustered_pass;
 #define TILE_LIST_PASSES                                                                           \
     &tile_depth_pass, &list_refine_pass, &list_count_pass, &list_scan_pass, &list_fill_pass,       \
         &list_report_pass
 #define CLUSTER_LIST_PASSES                                                                        \
     &cluster_keys_pass, &cluster_scan_pass, &cluster_places_pass, &cluster_count_pass,             \
-        &cluster_list_scan_pass, &cluster_fill_pass, &list_report_pass
+        &cluster_list_scan_pass, &cluster_fill_pass, &cluster_report_pass
 // What a pass reads that shades by lists: USE_LISTS(READ_VERTEX) or USE_LISTS(STORAGE_READ_COMPUTE).
 #define USE_LISTS(use_)                                                                            \
-    USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_)
+    USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_), USE(CLUSTERS, use_)
+// post.c
+extern const Pass post_pass, debug_pass;
+// debug_views.c
+extern const Pass overdraw_pass, overdraw_show_pass, debug_overlay_pass;
+
+#endif

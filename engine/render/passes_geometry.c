@@ -1,5 +1,5 @@
-// passes_geometry.c: passes that draw meshes: shadow map, G-buffer, forward shading, and what comes
-// over the lit picture.
+// passes_geometry.c: passes that draw meshes: shadow map, G-buffer, and what comes over the lit
+// picture.
 // Data in: a packet's draw lists. Data out: commands. Called by: pass_run (passes.c).
 #include "passes.h"
 
@@ -45,26 +45,12 @@ const Pass gbuffer_pass = {"gbuffer",
                            gbuffer_record,
                            NULL};
 
-static void forward_record(const PassContext *c) {
-    begin(c,
-          &(GpuRendering){.targets = {CLEARED(HDR)}, .target_count = 1, .depth = CLEARED(DEPTH)});
-    draw_list(c, PIPELINE_FORWARD, c->packet->opaque_draws, false);
-    draw_list(c, PIPELINE_FORWARD, c->packet->mask_draws, true);
-    gpu_cmd_end_rendering(c->cmd);
-}
-const Pass forward_pass = {"forward",
-                           {OVERWRITE(HDR, COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
-                            USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-                           3,
-                           forward_record,
-                           NULL};
-
 // --- What is drawn over the lit picture: sky, textured emission, blended surfaces ---
 
 static void over_record(const PassContext *c) {
-    begin(c, &(GpuRendering){.targets = {TARGET(HDR)},
+    begin(c, &(GpuRendering){.targets = {color_target(c, false)},
                              .target_count = 1,
-                             .depth = TARGET(DEPTH),
+                             .depth = depth_target(c, false),
                              .depth_read_only = true});
     draw_fullscreen(c, PIPELINE_SKY);
     draw_list(c, PIPELINE_EMISSIVE, c->packet->emissive_draws, false);
@@ -73,7 +59,8 @@ static void over_record(const PassContext *c) {
 }
 const Pass over_pass = {
     "sky and glow",
-    {USE(HDR, COLOR_TARGET), USE(DEPTH, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-    3,
+    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
+     USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+    5,
     over_record,
     NULL};

@@ -10,7 +10,9 @@ static void draw_lights(const PassContext *c, PipelineKind kind, u32 first, u32 
     bind_frame(c, pipeline);
     gpu_cmd_bind_vertices(c->cmd, 0, c->renderer->buffers[FRAME_BUFFER_LIGHTS],
                           first * sizeof(LightRecord));
-    gpu_cmd_bind_vertices(c->cmd, 1, c->renderer->buffers[FRAME_BUFFER_SPOTS], 0);
+    // Points have no spot record; something of the same size must be there for each.
+    FrameBuffer second = kind == PIPELINE_DEFERRED_SPOTS ? FRAME_BUFFER_SPOTS : FRAME_BUFFER_LIGHTS;
+    gpu_cmd_bind_vertices(c->cmd, 1, c->renderer->buffers[second], 0);
     gpu_cmd_draw(c->cmd, 3, count, 0, 0);
     c->renderer->stats.draw_calls++;
 }
@@ -53,6 +55,6 @@ const Pass tiled_pass = {"lighting",
                          {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
                           USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE),
                           USE_LISTS(STORAGE_READ_COMPUTE)},
-                         11,
+                         12,
                          tiled_record,
                          NULL};

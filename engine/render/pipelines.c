@@ -37,7 +37,7 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
      SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_SAMPLES) | SPEC_BIT(SPEC_VERTEX_LIGHTING))
 #define SPEC_ONE_LIGHT                                                                             \
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER) |          \
-     SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_READ_GBUFFER)
+     SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_BIT(SPEC_LIGHT_BRANCH) | SPEC_READ_GBUFFER)
 
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
@@ -45,6 +45,8 @@ typedef struct PipelineRow {
     u32 target_count;
     bool to_swapchain, to_gbuffer; // the targets of the layout
     bool has_depth, is_shadow;
+    bool may_be_ms; // drawn to the multisampled targets if the path has them
+    GpuStencil stencil;
     GpuDepth depth;
     GpuCull cull;
     GpuBlend blend;
@@ -84,21 +86,66 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                           .targets = {RESOURCE_HDR},
                           .target_count = 1,
                           .has_depth = true,
+                          .may_be_ms = true,
                           .depth = GPU_DEPTH_WRITE,
                           .vertex_layout = GPU_VERTEX_MESH,
-                          .spec_mask =
-                              SPEC_LIGHTING | SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
+                          .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_ALPHA_MASK) |
+                                       SPEC_BIT(SPEC_TEXTURES) | SPEC_BIT(SPEC_VERTEX_LIGHTING)},
     [PIPELINE_FORWARD_BLEND] = {.label = "forward blend",
                                 .vertex = "forward.vert",
                                 .fragment = "forward.frag",
                                 .targets = {RESOURCE_HDR},
                                 .target_count = 1,
                                 .has_depth = true,
+                                .may_be_ms = true,
                                 .depth = GPU_DEPTH_TEST,
                                 .blend = GPU_BLEND_ALPHA,
                                 .vertex_layout = GPU_VERTEX_MESH,
-                                .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_CELL_LISTS) |
-                                             SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_TEXTURES)},
+                                .spec_mask = SPEC_LIGHTING | SPEC_LISTS | SPEC_BIT(SPEC_TEXTURES)},
+    [PIPELINE_PREPASS] = {.label = "depth pre-pass",
+                          .vertex = "prepass.vert",
+                          .has_depth = true,
+                          .may_be_ms = true,
+                          .depth = GPU_DEPTH_WRITE,
+                          .vertex_layout = GPU_VERTEX_MESH},
+    [PIPELINE_PREPASS_MASK] = {.label = "depth pre-pass mask",
+                               .vertex = "prepass_mask.vert",
+                               .fragment = "prepass_mask.frag",
+                               .has_depth = true,
+                               .may_be_ms = true,
+                               .depth = GPU_DEPTH_WRITE,
+                               .vertex_layout = GPU_VERTEX_MESH,
+                               .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) |
+                                            SPEC_PALETTE},
+    [PIPELINE_FORWARD_LISTS] = {.label = "forward by lists",
+                                .vertex = "forward.vert",
+                                .fragment = "forward.frag",
+                                .targets = {RESOURCE_HDR},
+                                .target_count = 1,
+                                .has_depth = true,
+                                .may_be_ms = true,
+                                .depth = GPU_DEPTH_EQUAL,
+                                .vertex_layout = GPU_VERTEX_MESH,
+                                .spec_mask = SPEC_LIGHTING | SPEC_LISTS | SPEC_BIT(SPEC_TEXTURES)},
+    [PIPELINE_MULTIPASS_BASE] = {.label = "multipass base",
+                                 .vertex = "forward.vert",
+                                 .fragment = "multipass_base.frag",
+                                 .targets = {RESOURCE_ACCUMULATION},
+                                 .target_count = 1,
+                                 .has_depth = true,
+                                 .depth = GPU_DEPTH_EQUAL,
+                                 .vertex_layout = GPU_VERTEX_MESH,
+                                 .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TEXTURES)},
+#define MULTIPASS(label_, specs)                                                                   \
+    {                                                                                              \
+        .label = "multipass " label_, .vertex = "forward.vert",                                    \
+        .fragment = "multipass_lights.frag", .targets = {RESOURCE_ACCUMULATION},                   \
+        .target_count = 1, .has_depth = true, .depth = GPU_DEPTH_EQUAL, .blend = GPU_BLEND_ADD,    \
+        .vertex_layout = GPU_VERTEX_MESH, .spec_mask = (specs) | SPEC_BIT(SPEC_TEXTURES)           \
+    }
+    [PIPELINE_MULTIPASS_POINTS] = MULTIPASS("points", SPEC_LIGHTING & ~SPEC_BIT(SPEC_SPOTS)),
+    [PIPELINE_MULTIPASS_SPOTS] = MULTIPASS("spots", SPEC_LIGHTING),
+#undef MULTIPASS
     [PIPELINE_DEFERRED_BASE] = {.label = "deferred base",
                                 .vertex = "fullscreen.vert",
                                 .fragment = "deferred_base.frag",
@@ -124,6 +171,25 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                  .blend = GPU_BLEND_ADD,
                                  .vertex_layout = GPU_VERTEX_LIGHT,
                                  .spec_mask = SPEC_ONE_LIGHT | SPEC_BIT(SPEC_SPOTS)},
+#define VOLUME(label_, fragment_, depth_, cull_, stencil_, specs)                                  \
+    {                                                                                              \
+        .label = "light volumes " label_, .vertex = "volume.vert", .fragment = fragment_,          \
+        .targets = {RESOURCE_ACCUMULATION}, .target_count = 1, .has_depth = true, .depth = depth_, \
+        .cull = cull_, .stencil = stencil_, .blend = GPU_BLEND_ADD,                                \
+        .vertex_layout = GPU_VERTEX_VOLUME, .spec_mask = specs                                     \
+    }
+#define VOLUMES(id, label_, ...)                                                                   \
+    [PIPELINE_VOLUME_##id##_POINTS] = VOLUME(label_ " points", __VA_ARGS__, SPEC_ONE_LIGHT),       \
+    [PIPELINE_VOLUME_##id##_SPOTS] =                                                               \
+        VOLUME(label_ " spots", __VA_ARGS__, SPEC_ONE_LIGHT | SPEC_BIT(SPEC_SPOTS))
+#define LIGHT_SHADER "deferred_light.frag"
+    VOLUMES(BACK, "back", LIGHT_SHADER, GPU_DEPTH_BEHIND, GPU_CULL_FRONT, GPU_STENCIL_NONE),
+    VOLUMES(FRONT, "front", LIGHT_SHADER, GPU_DEPTH_TEST, GPU_CULL_BACK, GPU_STENCIL_NONE),
+    VOLUMES(MARK, "mark", NULL, GPU_DEPTH_TEST, GPU_CULL_NONE, GPU_STENCIL_MARK),
+    VOLUMES(SHADE, "shade", LIGHT_SHADER, GPU_DEPTH_NONE, GPU_CULL_FRONT, GPU_STENCIL_SHADE),
+#undef LIGHT_SHADER
+#undef VOLUMES
+#undef VOLUME
     [PIPELINE_DEFERRED_RESOLVE] = {.label = "deferred resolve",
                                    .vertex = "fullscreen.vert",
                                    .fragment = "deferred_resolve.frag",
@@ -135,12 +201,52 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                         .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS |
                                      SPEC_BIT(SPEC_SUBGROUP_CULL) | SPEC_BIT(SPEC_PIXELS_PER_LANE) |
                                      SPEC_BIT(SPEC_TILED_GROUP)},
+    [PIPELINE_CLUSTERED] = {.label = "clustered",
+                            .compute = "clustered.comp",
+                            .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS},
+    [PIPELINE_TILE_DEPTH] = {.label = "tile depth",
+                             .compute = "tile_depth.comp",
+                             .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT)},
+    [PIPELINE_TILE_DEPTH_MS] = {.label = "tile depth of samples",
+                                .compute = "tile_depth_ms.comp",
+                                .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_SAMPLES)},
+    [PIPELINE_LIST_REFINE] = {.label = "list refine",
+                              .compute = "list_refine.comp",
+                              .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_COUNT] = {.label = "list count",
+                             .compute = "list_count.comp",
+                             .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_SCAN] = {.label = "list scan",
+                            .compute = "list_scan.comp",
+                            .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_LIST_FILL] = {.label = "list fill",
+                            .compute = "list_fill.comp",
+                            .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_KEYS] = {.label = "cluster keys",
+                               .compute = "cluster_keys.comp",
+                               .spec_mask = SPEC_MAKE_LISTS | SPEC_READ_GBUFFER},
+    [PIPELINE_CLUSTER_KEYS_MS] = {.label = "cluster keys of samples",
+                                  .compute = "cluster_keys_ms.comp",
+                                  .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_SCAN] = {.label = "cluster scan",
+                               .compute = "cluster_scan.comp",
+                               .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_PLACES] = {.label = "cluster places",
+                                 .compute = "cluster_places.comp",
+                                 .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_COUNT] = {.label = "cluster count",
+                                .compute = "cluster_count.comp",
+                                .spec_mask = SPEC_MAKE_LISTS},
+    [PIPELINE_CLUSTER_FILL] = {.label = "cluster fill",
+                               .compute = "cluster_fill.comp",
+                               .spec_mask = SPEC_MAKE_LISTS},
     [PIPELINE_SKY] = {.label = "sky",
                       .vertex = "fullscreen.vert",
                       .fragment = "sky.frag",
                       .targets = {RESOURCE_HDR},
                       .target_count = 1,
                       .has_depth = true,
+                      .may_be_ms = true,
                       .depth = GPU_DEPTH_TEST,
                       .cull = GPU_CULL_NONE},
     [PIPELINE_EMISSIVE] = {.label = "emissive",
@@ -149,18 +255,84 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                            .targets = {RESOURCE_HDR},
                            .target_count = 1,
                            .has_depth = true,
+                           .may_be_ms = true,
                            .depth = GPU_DEPTH_TEST,
                            .blend = GPU_BLEND_ADD,
                            .vertex_layout = GPU_VERTEX_MESH,
-                           .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) |
-                                        SPEC_PALETTE},
+                           .spec_mask =
+                               SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES) | SPEC_PALETTE},
+    [PIPELINE_FOG] = {.label = "fog",
+                      .vertex = "fullscreen.vert",
+                      .fragment = "post_fog.frag",
+                      .targets = {RESOURCE_HDR},
+                      .target_count = 1,
+                      .cull = GPU_CULL_NONE,
+                      .blend = GPU_BLEND_ALPHA,
+                      .spec_mask = SPEC_BIT(SPEC_POST)},
+    [PIPELINE_HEAT] = {.label = "heat",
+                       .vertex = "fullscreen.vert",
+                       .fragment = "post_heat.frag",
+                       .targets = {RESOURCE_HDR},
+                       .target_count = 1,
+                       .cull = GPU_CULL_NONE},
+    [PIPELINE_POST_COPY] = {.label = "post copy",
+                            .vertex = "fullscreen.vert",
+                            .fragment = "post_copy.frag",
+                            .targets = {RESOURCE_HDR_OTHER},
+                            .target_count = 1,
+                            .cull = GPU_CULL_NONE},
+    [PIPELINE_SPLIT_COPY] = {.label = "split copy",
+                             .vertex = "fullscreen.vert",
+                             .fragment = "split_copy.frag",
+                             .targets = {RESOURCE_HDR_OTHER},
+                             .target_count = 1,
+                             .cull = GPU_CULL_NONE},
+    [PIPELINE_SPLIT] = {.label = "split",
+                        .vertex = "fullscreen.vert",
+                        .fragment = "split.frag",
+                        .targets = {RESOURCE_LDR},
+                        .target_count = 1,
+                        .cull = GPU_CULL_NONE,
+                        .spec_mask = SPEC_BIT(SPEC_POST)},
+    [PIPELINE_OVERDRAW] = {.label = "overdraw",
+                           .vertex = "geometry.vert",
+                           .fragment = "overdraw.frag",
+                           .targets = {RESOURCE_HDR},
+                           .target_count = 1,
+                           .has_depth = true,
+                           .depth = GPU_DEPTH_WRITE,
+                           .blend = GPU_BLEND_ADD,
+                           .vertex_layout = GPU_VERTEX_MESH,
+                           .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
+    [PIPELINE_LAYERS] = {.label = "layers",
+                         .vertex = "geometry.vert",
+                         .fragment = "overdraw.frag",
+                         .targets = {RESOURCE_HDR},
+                         .target_count = 1,
+                         .blend = GPU_BLEND_ADD,
+                         .vertex_layout = GPU_VERTEX_MESH,
+                         .spec_mask = SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES)},
+    [PIPELINE_OVERDRAW_SHOW] = {.label = "overdraw heat",
+                                .vertex = "fullscreen.vert",
+                                .fragment = "overdraw_show.frag",
+                                .targets = {RESOURCE_LDR},
+                                .target_count = 1,
+                                .cull = GPU_CULL_NONE},
+    [PIPELINE_LINES] = {.label = "lines",
+                        .vertex = "overlay.vert",
+                        .fragment = "lines.frag",
+                        .targets = {RESOURCE_LDR},
+                        .target_count = 1,
+                        .cull = GPU_CULL_NONE,
+                        .blend = GPU_BLEND_ALPHA,
+                        .vertex_layout = GPU_VERTEX_UI},
     [PIPELINE_TONEMAP] = {.label = "tonemap",
                           .vertex = "fullscreen.vert",
                           .fragment = "tonemap.frag",
                           .targets = {RESOURCE_LDR},
                           .target_count = 1,
                           .cull = GPU_CULL_NONE,
-                          .spec_mask = SPEC_BIT(SPEC_TONEMAP)},
+                          .spec_mask = SPEC_BIT(SPEC_TONEMAP) | SPEC_BIT(SPEC_POST)},
     [PIPELINE_DEBUG] = {.label = "debug",
                         .vertex = "fullscreen.vert",
                         .fragment = "debug.frag",
@@ -201,49 +373,12 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .layouts = {renderer->frame_layout, renderer->material_layout},
         .layout_count = 2,
         .push_size = PUSH_SIZE,
-    [PIPELINE_CLUSTERED] = {.label = "clustered",
-                            .compute = "clustered.comp",
-                            .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS},
-    [PIPELINE_TILE_DEPTH] = {.label = "tile depth",
-                             .compute = "tile_depth.comp",
-                             .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT)},
-    [PIPELINE_TILE_DEPTH_MS] = {.label = "tile depth of samples",
-                                .compute = "tile_depth_ms.comp",
-                                .spec_mask = SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_SAMPLES)},
-    [PIPELINE_LIST_REFINE] = {.label = "list refine",
-                              .compute = "list_refine.comp",
-                              .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_LIST_COUNT] = {.label = "list count",
-                             .compute = "list_count.comp",
-                             .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_LIST_SCAN] = {.label = "list scan",
-                            .compute = "list_scan.comp",
-                            .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_LIST_FILL] = {.label = "list fill",
-                            .compute = "list_fill.comp",
-                            .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_CLUSTER_KEYS] = {.label = "cluster keys",
-                               .compute = "cluster_keys.comp",
-                               .spec_mask = SPEC_MAKE_LISTS | SPEC_READ_GBUFFER},
-    [PIPELINE_CLUSTER_KEYS_MS] = {.label = "cluster keys of samples",
-                                  .compute = "cluster_keys_ms.comp",
-                                  .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_CLUSTER_SCAN] = {.label = "cluster scan",
-                               .compute = "cluster_scan.comp",
-                               .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_CLUSTER_PLACES] = {.label = "cluster places",
-                                 .compute = "cluster_places.comp",
-                                 .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_CLUSTER_COUNT] = {.label = "cluster count",
-                                .compute = "cluster_count.comp",
-                                .spec_mask = SPEC_MAKE_LISTS},
-    [PIPELINE_CLUSTER_FILL] = {.label = "cluster fill",
-                               .compute = "cluster_fill.comp",
-                               .spec_mask = SPEC_MAKE_LISTS},
         .spec_count = SPEC_COUNT,
         .target_count = row->to_swapchain ? 1 : row->target_count,
-        .depth_format = row->has_depth ? GPU_FORMAT_D32F : GPU_FORMAT_NONE,
+        .depth_format = key->depth_format,
         .depth = row->depth,
+        .stencil = row->stencil,
+        .samples = key->samples,
         .cull = key->double_sided ? GPU_CULL_NONE : row->cull,
         .blend = row->blend,
         .vertex_layout = row->vertex_layout,
@@ -279,7 +414,13 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
                          PipelineVariant variant) {
     u32 pixels_per_lane = tiled_pixels_per_lane(renderer, packet);
     const RenderSettings *settings = &packet->settings;
-    PipelineKey key = {.kind = kind, .double_sided = variant.double_sided};
+    bool is_ms = rows[kind].may_be_ms && renderer->samples > 1;
+    PipelineKey key = {.kind = kind,
+                       .double_sided = variant.double_sided,
+                       .depth_format = !rows[kind].has_depth           ? GPU_FORMAT_NONE
+                                       : is_ms || rows[kind].is_shadow ? GPU_FORMAT_D32F
+                                                                       : renderer->depth_format,
+                       .samples = is_ms ? renderer->samples : 1};
     u32 spec[SPEC_COUNT] = {
         [SPEC_BRDF_MASK] = packet->brdf_mask,
         [SPEC_ATTENUATION] = packet->attenuation,
@@ -306,6 +447,9 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
             settings->cluster_normals && settings->path == PATH_CLUSTERED_DEFERRED,
         [SPEC_CELL_LISTS] = 1, // only blended surfaces ask: the tile lists are always there
         [SPEC_TONEMAP] = settings->tonemap,
+        [SPEC_POST] = variant.post,
+        [SPEC_SAMPLES] = renderer->samples,
+        [SPEC_VERTEX_LIGHTING] = variant.vertex_lit,
         [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
         [SPEC_DIRECTIONALS] = packet->directionals.count,
@@ -314,6 +458,11 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
                               : packet->lights.count <= 2 * LIGHT_BLOCK_CAP ? 2
                                                                             : 0,
     };
+    if (kind == PIPELINE_FORWARD_BLEND) {
+        // Blended surfaces lie before those that the device made its lists for.
+        spec[SPEC_DEVICE_LISTS] = 0;
+        spec[SPEC_CLUSTERED] = MIN(spec[SPEC_CLUSTERED], 1);
+    }
     for (u32 i = 0; i < SPEC_COUNT; i++)
         key.spec[i] = rows[kind].spec_mask & SPEC_BIT(i) ? spec[i] : 0;
     for (u32 i = 0; i < renderer->pipeline_count; i++)
@@ -336,8 +485,3 @@ void pipelines_destroy(Renderer *renderer) {
             gpu_destroy_pipeline(renderer->gpu, renderer->pipelines[i].pipeline);
     renderer->pipeline_count = 0;
 }
-    if (kind == PIPELINE_FORWARD_BLEND) {
-        // Blended surfaces lie before those that the device made its lists for.
-        spec[SPEC_DEVICE_LISTS] = 0;
-        spec[SPEC_CLUSTERED] = MIN(spec[SPEC_CLUSTERED], 1);
-    }

@@ -8,8 +8,9 @@
 #include "render.h"
 
 // X(id, label, format): targets of the internal resolution; SHADOW_MAP has its own size. The
-// G-buffer's formats are the layout's (layouts.c). From RESOURCE_FIRST_BUFFER on: buffers that the
-// device fills (passes_lists.c).
+// G-buffer's formats are the layout's (layouts.c); DEPTH gets a stencil if the packet asks for one;
+// the multisampled ones (_MS) are there once a packet wanted them. From RESOURCE_FIRST_BUFFER on:
+// buffers that the device fills (passes_lists.c).
 #define RENDER_RESOURCES(X)                                                                        \
     X(SHADOW_MAP, "shadow map", GPU_FORMAT_D32F)                                                   \
     X(GBUFFER_0, "gbuffer 0", GPU_FORMAT_NONE)                                                     \
@@ -18,6 +19,8 @@
     X(GBUFFER_3, "gbuffer 3", GPU_FORMAT_NONE)                                                     \
     X(GBUFFER_4, "gbuffer 4", GPU_FORMAT_NONE)                                                     \
     X(DEPTH, "depth", GPU_FORMAT_D32F)                                                             \
+    X(DEPTH_MS, "depth ms", GPU_FORMAT_D32F)                                                       \
+    X(HDR_MS, "hdr ms", GPU_FORMAT_RGBA16F)                                                        \
     X(HDR, "hdr", GPU_FORMAT_RGBA16F)                                                              \
     X(HDR_OTHER, "hdr other", GPU_FORMAT_RGBA16F)                                                  \
     X(ACCUMULATION, "accumulation", GPU_FORMAT_RGBA32F)                                            \
@@ -65,28 +68,25 @@ typedef enum PipelineKind {
     PIPELINE_GBUFFER,
     PIPELINE_FORWARD,
     PIPELINE_FORWARD_BLEND,
+    PIPELINE_PREPASS,
+    PIPELINE_PREPASS_MASK,
+    PIPELINE_FORWARD_LISTS, // after a depth pre-pass: the lights of the pixel's cell
+    PIPELINE_MULTIPASS_BASE,
+    PIPELINE_MULTIPASS_POINTS,
+    PIPELINE_MULTIPASS_SPOTS,
     PIPELINE_DEFERRED_BASE,
     PIPELINE_DEFERRED_POINTS,
     PIPELINE_DEFERRED_SPOTS,
+    PIPELINE_VOLUME_BACK_POINTS, // of each kind, spots come after points
+    PIPELINE_VOLUME_BACK_SPOTS,
+    PIPELINE_VOLUME_FRONT_POINTS,
+    PIPELINE_VOLUME_FRONT_SPOTS,
+    PIPELINE_VOLUME_MARK_POINTS,
+    PIPELINE_VOLUME_MARK_SPOTS,
+    PIPELINE_VOLUME_SHADE_POINTS,
+    PIPELINE_VOLUME_SHADE_SPOTS,
     PIPELINE_DEFERRED_RESOLVE,
     PIPELINE_TILED,
-    PIPELINE_SKY,
-    PIPELINE_EMISSIVE,
-    PIPELINE_TONEMAP,
-    PIPELINE_DEBUG,
-    PIPELINE_TEXT,
-    PIPELINE_PRESENT,
-    PIPELINE_OVERLAY,
-    PIPELINE_COUNT
-} PipelineKind;
-typedef struct PipelineKey {
-    u32 kind, double_sided;
-    u32 spec[SPEC_COUNT];
-} PipelineKey;
-#define PIPELINES_CAP 1024
-typedef struct PipelineSlot {
-    PipelineKey key;
-    GpuPipeline pipeline;
     PIPELINE_CLUSTERED,
     PIPELINE_TILE_DEPTH,
     PIPELINE_TILE_DEPTH_MS, // of a multisampled depth buffer
@@ -100,6 +100,33 @@ typedef struct PipelineSlot {
     PIPELINE_CLUSTER_PLACES,
     PIPELINE_CLUSTER_COUNT,
     PIPELINE_CLUSTER_FILL,
+    PIPELINE_SKY,
+    PIPELINE_EMISSIVE,
+    PIPELINE_FOG,
+    PIPELINE_HEAT,
+    PIPELINE_POST_COPY,
+    PIPELINE_TONEMAP,
+    PIPELINE_DEBUG,
+    PIPELINE_TEXT,
+    PIPELINE_PRESENT,
+    PIPELINE_OVERLAY,
+    PIPELINE_OVERDRAW,
+    PIPELINE_LAYERS,
+    PIPELINE_OVERDRAW_SHOW,
+    PIPELINE_LINES,
+    PIPELINE_SPLIT_COPY,
+    PIPELINE_SPLIT,
+    PIPELINE_COUNT
+} PipelineKind;
+typedef struct PipelineKey {
+    u32 kind, double_sided;
+    u32 depth_format, samples;
+    u32 spec[SPEC_COUNT];
+} PipelineKey;
+#define PIPELINES_CAP 1024
+typedef struct PipelineSlot {
+    PipelineKey key;
+    GpuPipeline pipeline;
 } PipelineSlot;
 
 // --- Passes (pass_table.c, passes.c) ---
@@ -110,6 +137,8 @@ typedef struct PassContext {
     GpuCommands *cmd;
     const Packet *packet;
     const Overlay *overlay; // window only
+    const PacketPost *post; // step of the post chain that runs; NULL in other passes
+    const SplitView *split; // of a split picture's last passes
 } PassContext;
 typedef struct ResourceUse {
     RenderResource resource;
@@ -123,6 +152,8 @@ typedef struct Pass {
     u32 use_count;
     void (*record)(const PassContext *context);
     bool (*needed)(const PassContext *context); // NULL = always
+    // Instead of all that: runs other passes, as many as the packet asks for (the post chain).
+    void (*expand)(const PassContext *context);
 } Pass;
 #define PATH_PASSES_CAP 24
 typedef struct PathRow {
@@ -130,8 +161,9 @@ typedef struct PathRow {
     const Pass *passes[PATH_PASSES_CAP]; // ends with NULL
 } PathRow;
 extern const PathRow path_table[PATH_COUNT];
-extern const PathRow debug_path; // any picture but VIEW_FINAL
-extern const Pass present_pass;  // after any path, when drawing to the window
+// What draws this packet: the path of its settings, or a debug view's own list.
+const PathRow *path_of(const Packet *packet);
+extern const Pass present_pass; // after any path, when drawing to the window
 
 // --- G-buffer layouts (layouts.c) ---
 
@@ -157,37 +189,6 @@ typedef struct MaterialGroup {
     GpuBindGroup group;
 } MaterialGroup;
 
-struct Renderer {
-    Gpu *gpu;
-    Arena arena; // level lifetime: mesh and texture tables
-
-    GpuBindLayout frame_layout, material_layout;
-    GpuSampler sampler_nearest, sampler_linear, sampler_repeat, sampler_shadow;
-
-    // Targets.
-    u32 width_px, height_px, shadow_size_px;
-    u32 layout;                               // GbufferLayout of the targets
-    GpuTexture targets[RESOURCE_COUNT];       // of textures
-    GpuBuffer device_buffers[RESOURCE_COUNT]; // of buffers
-    GpuUsage usage[RESOURCE_COUNT];           // what the newest recorded pass did with it
-    GpuBuffer readback;
-    u64 shadow_key; // of the picture in the shadow map; 0 = none
-
-    // Per-frame buffers and the group over everything.
-    GpuBuffer buffers[FRAME_BUFFER_COUNT];
-    GpuBindGroup frame_group;
-    bool frame_group_stale;
-
-    // Level.
-    u64 assets_stamp;
-    GpuBuffer vertices, indices;
-    GpuMesh *meshes;
-    GpuTexture *textures;
-    u32 mesh_count, texture_count;
-    GpuTexture white, flat_normal, black; // 1x1 stand-ins
-    GpuTexture falloff, normal_z, palette; // look-ups (lookups.c), made when first asked for
-    u64 falloff_key, palette_key;          // hash of what they hold
-    MaterialGroup *material_groups;
 // --- Texts in the picture (overlay.c) ---
 
 typedef enum TextLayer {
@@ -226,11 +227,51 @@ typedef struct FrameSet {
 typedef struct DeviceLists {
     u32 index_cap, index_limit; // list entries; limit 0 = what the device allows
     u32 cluster_cap, cluster_limit;
-    GpuBuffer reports;              // GRID_COUNTER_COUNT counters each
-    bool reported[LIST_REPORTS_CAP]; // is on the way, or there and not read
+    GpuBuffer reports;                // GRID_COUNTER_COUNT counters each
+    bool reported[LIST_REPORTS_CAP];  // is on the way, or there and not read
     u32 counters[GRID_COUNTER_COUNT]; // of the newest report
 } DeviceLists;
 
+struct Renderer {
+    Gpu *gpu;
+    Arena arena; // level lifetime: mesh and texture tables
+
+    GpuBindLayout frame_layout, material_layout;
+    GpuSampler sampler_nearest, sampler_linear, sampler_repeat, sampler_shadow;
+
+    // Targets.
+    u32 width_px, height_px, shadow_size_px;
+    u32 layout;                               // GbufferLayout of the G-buffer's targets, which
+    u32 gbuffer_width_px, gbuffer_height_px;  // have their own size: see FrameSet
+    GpuTexture targets[RESOURCE_COUNT];       // of textures
+    GpuBuffer device_buffers[RESOURCE_COUNT]; // of buffers
+    GpuUsage usage[RESOURCE_COUNT];           // what the newest recorded pass did with it
+    GpuBuffer readback;
+    u64 shadow_key;                // of the picture in the shadow map; 0 = none
+    GpuFormat depth_format;        // of DEPTH
+    u32 samples;                   // a pixel, of this packet: 1, or 4 with the _MS targets
+    u32 ms_width_px, ms_height_px; // of the _MS targets; 1 x 1 stand-ins at first
+    bool is_warming_up;            // all variants of what is drawn run, the picture is nobody's
+    GpuBuffer volume_vertices, volume_indices; // volumes.c: sphere, then cone
+
+    // Per-frame buffers and the group over everything.
+    GpuBuffer buffers[FRAME_BUFFER_COUNT];
+    GpuBindGroup frame_group;
+    bool frame_group_stale;  // a bound resource was made anew
+    u32 bindings_version;    // counts how often that was so
+    u32 frame_group_version; // of the bindings in frame_group
+    FrameSet parked;         // of the other packet of a split frame
+
+    // Level.
+    u64 assets_stamp;
+    GpuBuffer vertices, indices;
+    GpuMesh *meshes;
+    GpuTexture *textures;
+    u32 mesh_count, texture_count;
+    GpuTexture white, flat_normal, black;  // 1x1 stand-ins
+    GpuTexture falloff, normal_z, palette; // look-ups (lookups.c), made when first asked for
+    u64 falloff_key, palette_key;          // hash of what they hold
+    MaterialGroup *material_groups;
     u32 material_group_count, material_group_cap;
 
     PipelineSlot pipelines[PIPELINES_CAP];
@@ -239,15 +280,22 @@ typedef struct DeviceLists {
     // Text and UI.
     GpuTexture overlay_texture;
     GpuBuffer text_vertices, text_indices, ui_vertices, ui_indices;
-    u32 text_quad_count;
+    u32 text_ends[TEXT_LAYER_COUNT]; // in quads: a layer goes from the last one's end to its own
+    Note notes[NOTES_CAP];           // for the next text_upload
+    u32 note_count;
+    GpuBuffer line_vertices; // of debug_draw.c
+    u32 line_vertex_count;
 
+    DeviceLists lists;
     RendererStats stats;
 };
 
 // What of a material a pipeline is specialised for.
 typedef struct PipelineVariant {
     bool alpha_mask, double_sided;
-    u32 textures; // see SPEC_TEXTURES
+    u32 textures;   // see SPEC_TEXTURES
+    u32 vertex_lit; // PacketDraw.vertex_lit
+    u32 post;       // SPEC_POST
 } PipelineVariant;
 // pipelines.c: from the cache or newly made. {0} if the device refuses (LOG).
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
@@ -264,13 +312,30 @@ GpuBindGroup render_material_group(Renderer *renderer, const PacketMaterial *mat
 
 // frame_upload.c: buffers and targets as large as the packet needs, then the copies.
 bool frame_upload(Renderer *renderer, const Packet *packet);
+// The fields that belong to one packet change places with the parked ones; LDR and LDR_OTHER change
+// places as well, so that the other packet draws its picture beside the first one's.
+void frame_sets_exchange(Renderer *renderer);
 void frame_upload_destroy(Renderer *renderer);
 
 // overlay.c
 void overlay_record(const PassContext *context, const Overlay *overlay);
-void text_record(const PassContext *context);
+void text_record(const PassContext *context, TextLayer layer);
+// The packet's texts and the notes, which are used up.
 bool text_upload(Renderer *renderer, const Packet *packet);
+void note_add(Renderer *renderer, TextLayer layer, f32 x_px, f32 y_px, f32 size_px, u32 color,
+              const char *format, ...) PRINTF_LIKE(7, 8);
+// A dynamic vertex or index buffer of at least so many bytes.
+bool overlay_buffer(Renderer *renderer, GpuBuffer *buffer, const char *label, u64 size,
+                    bool vertex);
 void overlay_destroy(Renderer *renderer);
+
+f32 note_size(const Packet *packet); // px that suit the picture
+f32 note_width(f32 size_px, const char *text);
+#define NOTE_COLOR 0xFFF0F0F0u
+
+// debug_views.c: lines, marks and legend of the packet's debug view, if it has any.
+bool debug_view_upload(Renderer *renderer, const Packet *packet);
+void debug_view_record(const PassContext *context);
 
 // lookups.c: the textures that this packet's settings ask for, holding what it needs.
 bool lookups_update(Renderer *renderer, const Packet *packet);
@@ -282,15 +347,6 @@ void volumes_destroy(Renderer *renderer);
 
 // device_lists.c: buffers that the device fills, as large as the packet needs.
 bool device_lists_resize(Renderer *renderer, const Packet *packet);
-
-// passes.c
-void pass_run(const PassContext *context, const Pass *pass);
-// Shortest spelling of drawing lists of the packet.
-void draw_list(const PassContext *context, PipelineKind kind, PacketSection section,
-               bool alpha_mask);
-
-    DeviceLists lists;
-#endif
 // Counters of the frame that last used a frame slot, which must be done: buffers grow by them, and
 // the stats tell them.
 void device_lists_read(Renderer *renderer, u32 slot);
@@ -306,3 +362,14 @@ void device_lists_stats(Renderer *renderer, const Packet *packet);
 
 // renderer.c: one packet's uploads and passes.
 bool packet_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet);
+
+// passes.c
+void pass_run(const PassContext *context, const Pass *pass);
+// Shortest spelling of drawing lists of the packet.
+void draw_list(const PassContext *context, PipelineKind kind, PacketSection section,
+               bool alpha_mask);
+// The same with push constants of at most PUSH_SIZE bytes.
+void draw_list_with(const PassContext *context, PipelineKind kind, PacketSection section,
+                    bool alpha_mask, const void *push, u32 push_size);
+
+#endif

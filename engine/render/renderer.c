@@ -30,7 +30,7 @@ Renderer *renderer_create(Gpu *gpu) {
                                                          .kinds = {GPU_BINDING_SAMPLED_TEXTURE,
                                                                    GPU_BINDING_SAMPLED_TEXTURE,
                                                                    GPU_BINDING_SAMPLED_TEXTURE}});
-    if (!render_assets_create(renderer)) {
+    if (!render_assets_create(renderer) || !volumes_create(renderer)) {
         renderer_destroy(renderer);
         return NULL;
     }
@@ -43,6 +43,7 @@ void renderer_destroy(Renderer *renderer) {
     pipelines_destroy(renderer);
     frame_upload_destroy(renderer);
     overlay_destroy(renderer);
+    volumes_destroy(renderer);
     render_assets_destroy(renderer);
     arena_destroy(&renderer->arena);
     free(renderer);
@@ -160,7 +161,9 @@ static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratc
     for (u32 i = 0; i < 4; i++)
         copy->frame.counts3[i] = i < 2 ? MIN(copy->frame.counts3[i], copy->frame.counts[i]) : 0;
     copy->frame.grid[2] = 1;
+    renderer->is_warming_up = true;
     bool ok = renderer_render_image(renderer, copy, NULL, NULL);
+    renderer->is_warming_up = false;
     arena_rewind(scratch, mark);
     return ok;
 }

@@ -169,19 +169,20 @@ static SortItem *radix_sort(SortItem *items, SortItem *spare, u32 count) {
     return items;
 }
 
-// Key, from the lowest bit: entity index, mesh (16 bits), level of detail (2), material (9), band
-// of distance (4), alpha mode (2). Blended: entity index, distance (32, inverted; the bits of a
-// non-negative f32 sort like it), alpha mode.
+// Key, from the lowest bit: entity index, mesh (16 bits), level of detail (2), material (9), vertex
+// lighting (2), band of distance (4), alpha mode (2). Blended: entity index, distance (32,
+// inverted; the bits of a non-negative f32 sort like it), alpha mode.
 enum {
     KEY_MESH = ENTITY_INDEX_BITS,
     KEY_LOD = KEY_MESH + 16,
     KEY_SURFACE = KEY_LOD + 2,
-    KEY_BAND = KEY_SURFACE + 9,
-    KEY_ALPHA = ENTITY_INDEX_BITS + 32,
+    KEY_VERTEX = KEY_SURFACE + 9,
+    KEY_BAND = KEY_VERTEX + 2,
+    KEY_ALPHA = ENTITY_INDEX_BITS + 34,
     BAND_MAX = 15
 };
 _Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9 && MESH_LODS_CAP <= 4 &&
-                   KEY_BAND + 4 <= KEY_ALPHA,
+                   KEY_BAND + 4 <= KEY_ALPHA && KEY_ALPHA + 2 <= 64,
                "key fields");
 
 // ---- distance and level of detail ----
@@ -220,6 +221,18 @@ static u32 distance_band(f32 distance, f32 radius) {
     u32 exponent = bits >> 23; // not negative: no sign
     return CLAMP(exponent, 127, 127 + BAND_MAX) - 127;
 }
+
+// Share of its local light that a drawable gets at its vertices: 0 up to the level's distance, all
+// from a quarter beyond, so that nothing pops. It goes by the nearest point: nothing nearer
+// changes.
+#define VERTEX_BAND 0.25f
+static f32 vertex_share(f32 distance, const PacketView *view, const PacketMaterial *binding) {
+    f32 from = view->vertex_lighting;
+    // A vertex does not know which of its sides is seen.
+    if (!(from > 0.0f) || binding->double_sided || binding->alpha_mode == ALPHA_BLEND) return 0.0f;
+    return f32_smoothstep(from, from * (1.0f + VERTEX_BAND), distance);
+}
+static u32 vertex_lit(f32 share) { return share <= 0.0f ? 0 : share < 1.0f ? 1 : 2; }
 
 // ---- keys and runs ----
 
@@ -271,7 +284,8 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
             bool depth_only = shadow && binding->alpha_mode == ALPHA_OPAQUE;
             u64 surface = depth_only ? binding->double_sided : material;
             u64 band = shadow ? 0 : distance_band(distance, radius);
-            key |= (u64)binding->alpha_mode << KEY_ALPHA | band << KEY_BAND |
+            u64 lit = shadow ? 0 : vertex_lit(vertex_share(distance, view, binding));
+            key |= (u64)binding->alpha_mode << KEY_ALPHA | band << KEY_BAND | lit << KEY_VERTEX |
                    surface << KEY_SURFACE | (u64)lod << KEY_LOD | (u64)d->mesh[row] << KEY_MESH;
         }
         items[lists.row_count++] = (SortItem){key, row, (u16)material, (u16)lod};
@@ -281,6 +295,7 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
 
     lists.rows = ARENA_PUSH(scratch, u32, lists.row_count);
     lists.material = ARENA_PUSH(scratch, u16, lists.row_count);
+    lists.vertex_share = ARENA_PUSH(scratch, f32, lists.row_count);
     PacketDraw *draws = ARENA_PUSH(scratch, PacketDraw, lists.row_count), *draw = draws - 1;
     u64 run = UINT64_MAX; // what the draws of one run share
     for (u32 i = 0; i < lists.row_count; i++) {
@@ -288,14 +303,20 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
         u32 mesh = d->mesh[item->row], alpha = palette->bindings[item->material].alpha_mode;
         lists.rows[i] = item->row;
         lists.material[i] = item->material;
+        if (!shadow)
+            lists.vertex_share[i] = vertex_share(sphere_distance(d, item->row, view), view,
+                                                 &palette->bindings[item->material]);
         u64 this_run = item->key >> KEY_MESH;
         if (alpha == ALPHA_BLEND)
             this_run = ((u64)alpha << KEY_ALPHA | (u64)item->material << KEY_SURFACE |
                         (u64)item->lod << KEY_LOD | (u64)mesh << KEY_MESH) >>
                        KEY_MESH;
         if (this_run != run) {
-            *++draw = (PacketDraw){
-                .mesh = mesh, .material = item->material, .first_instance = i, .lod = item->lod};
+            *++draw = (PacketDraw){.mesh = mesh,
+                                   .material = item->material,
+                                   .first_instance = i,
+                                   .lod = item->lod,
+                                   .vertex_lit = vertex_lit(lists.vertex_share[i])};
             if (!lists.lists[alpha]) lists.lists[alpha] = draw; // lists follow each other
             lists.counts[alpha]++;
             run = this_run;
@@ -323,6 +344,7 @@ static void job_instances(void *context, u32 begin, u32 end, u32 thread_index) {
         columns_get_mat34(&d->w00, row, (f32 *)record->world);
         record->ids[0] = job->draws->material[i];
         record->ids[1] = d->table.entity[row];
+        memcpy(&record->ids[2], &job->draws->vertex_share[i], sizeof record->ids[2]);
     }
 }
 

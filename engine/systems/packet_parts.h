@@ -32,14 +32,14 @@ typedef struct LightParts {
     u32 occluded, merged, merged_pairs, dropped, over_budget, fading; // as in PacketCounts
     u32 near, between, far;
     f32 merge_error, vertex_lighting; // the latter: FrameRecord
-    PacketLightMark *marks; // only if the view asks
+    PacketLightMark *marks;           // only if the view asks
     u32 mark_count;
     f32 stage_ms[LIGHT_STAGE_COUNT];
     u32 point_count, spot_count;
     LightRecord *lights; // [point_count + spot_count + 1]: points, spots, the dummy
     SpotRecord *spots;   // [spot_count]
     u32 point_highlights, spot_highlights; // the first so many of each have a highlight
-    LightRecord *gi_lights; // [gi_count]
+    LightRecord *gi_lights;                // [gi_count]
     u32 gi_count;
     DirectionalRecord directionals[DIRECTIONALS_CAP];
     u32 directional_count;
@@ -70,8 +70,7 @@ typedef struct PostParts {
     PacketPost *posts; // in the order in which they run
     u32 count;
 } PostParts;
-PostParts packet_collect_posts(const PacketBuildDesc *desc, const PacketView *view,
-                               Arena *scratch);
+PostParts packet_collect_posts(const PacketBuildDesc *desc, const PacketView *view, Arena *scratch);
 
 // ---- packet_draws.c ----
 
@@ -88,8 +87,8 @@ typedef struct MaterialPalette {
 MaterialPalette *packet_collect_materials(const World *world, Arena *scratch);
 
 typedef struct DrawLists {
-    u32 *rows;     // [row_count] drawable row of each instance, in draw order
-    u16 *material; // [row_count] palette index of each
+    u32 *rows;         // [row_count] drawable row of each instance, in draw order
+    u16 *material;     // [row_count] palette index of each
     f32 *vertex_share; // [row_count] of local light that comes from the vertices
     u32 row_count;
     PacketDraw *lists[3]; // by AlphaMode; first_instance counts from this object's first row
