@@ -4,7 +4,8 @@
 // captured.
 #include "replay.h"
 #include <stdio.h>
-#include <string.h>
+
+#define RELIST_ARENA_CAP GIB(1)
 
 static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
                       const AssetStore *store, const Packet *packet, Split *split,
@@ -49,33 +50,26 @@ static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
     return TOOL_OK;
 }
 
-// The same frame in another way.
-static const Packet *with_settings(const Packet *packet, const RenderSettings *settings,
-                                   Arena *arena) {
-    Packet *copy = arena_push(arena, packet->size, CACHE_LINE);
-    memcpy(copy, packet, packet->size);
-    copy->settings = *settings;
-    return copy;
-}
-
 int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *arena) {
     AssetStore store;
     const Packet *packet;
     if (!frame_file_read(options->file, arena, &store, &packet)) return TOOL_DIFFERENT;
-    Packet *own = (Packet *)(uintptr_t)packet; // just read into our arena
+    RenderSettings settings = packet->settings;
+    static Split split;
+    const bool is_split = options->split.ways[0] != NULL;
+    Arena scratch = {0};
     int result = TOOL_USAGE;
-    if (headless_settings(&own->settings, options->path, options->view, &options->sets)) {
+    if (headless_settings(&settings, options->path, options->view, &options->sets) &&
+        (!is_split || split_begin(&split, &options->split, &settings, "replay")) &&
+        arena_create(&scratch, "lists", RELIST_ARENA_CAP)) {
         Headless headless = {0};
-        static Split split;
-        const Packet *a = packet, *b = NULL;
-        bool ok = true;
-        if (options->split.ways[0]) {
-            ok = split_begin(&split, &options->split, &own->settings, "replay");
-            if (ok) a = with_settings(packet, &split.settings[0], arena);
-            if (ok) b = with_settings(packet, &split.settings[1], arena);
-        }
-        if (ok) result = draw_frame(options, common, &store, a, &split, b, arena, &headless);
+        const Packet *a =
+            packet_relist(packet, is_split ? &split.settings[0] : &settings, arena, &scratch);
+        const Packet *b =
+            is_split ? packet_relist(packet, &split.settings[1], arena, &scratch) : NULL;
+        result = draw_frame(options, common, &store, a, &split, b, arena, &headless);
         headless_close(&headless);
+        arena_destroy(&scratch);
     }
     asset_store_destroy(&store);
     return result;

@@ -110,6 +110,21 @@ static u32 circle_step(const DebugDraw *draw, Vec3 center, f32 radius) {
     return radius_px > 80.0f ? 1 : radius_px > 30.0f ? 2 : radius_px > 12.0f ? 4 : 6;
 }
 
+void debug_ball(DebugDraw *draw, Vec3 center, f32 radius, u32 color) {
+    Vec3 eye = vec3(draw->packet->frame.camera[0], draw->packet->frame.camera[1],
+                    draw->packet->frame.camera[2]);
+    Vec3 to = vec3_sub(center, eye);
+    f32 distance = vec3_length(to);
+    if (!(distance > radius)) return; // seen from inside
+    // The circle where rays from the eye touch the ball.
+    f32 sine = radius / distance, cosine = sqrtf(MAX(1.0f - sine * sine, 0.0f));
+    Vec3 axis = vec3_scale(to, 1.0f / distance);
+    Vec3 side = fabsf(axis.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+    Vec3 u = vec3_normalize(vec3_cross(axis, side)), v = vec3_cross(axis, u);
+    circle(draw, vec3_sub(center, vec3_scale(axis, radius * sine)), vec3_scale(u, radius * cosine),
+           vec3_scale(v, radius * cosine), circle_step(draw, center, radius), color);
+}
+
 void debug_sphere(DebugDraw *draw, Vec3 center, f32 radius, u32 color) {
     u32 step = circle_step(draw, center, radius);
     Vec3 x = vec3(radius, 0, 0), y = vec3(0, radius, 0), z = vec3(0, 0, radius);

@@ -18,7 +18,9 @@ typedef struct DebugDraw {
 bool debug_project(const DebugDraw *draw, Vec3 point, Vec3 *out);
 // World space; dimmed where a surface lies before it.
 void debug_line(DebugDraw *draw, Vec3 a, Vec3 b, u32 color);
-// Three great circles; segments follow the size on the picture.
+// Its outline as seen from the camera; segments follow the size on the picture.
+void debug_ball(DebugDraw *draw, Vec3 center, f32 radius, u32 color);
+// Three great circles.
 void debug_sphere(DebugDraw *draw, Vec3 center, f32 radius, u32 color);
 // Tip, unit axis, length of the edge, cosine of the half angle.
 void debug_cone(DebugDraw *draw, Vec3 tip, Vec3 axis, f32 reach, f32 cos_half, u32 color);

@@ -11,6 +11,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#define CROWD        64u     // more lights than that are drawn with fewer and fainter lines
 #define VERTICES_CAP 786432u // 15 MiB; shapes beyond it are counted in the legend
 
 // RGBA8, red in the low byte.
@@ -80,6 +81,10 @@ static u32 with_alpha(u32 color, f32 alpha) {
     return (color & 0xFFFFFFu) | (u32)(CLAMP(alpha, 0.0f, 1.0f) * 255.0f) << 24;
 }
 
+static f32 crowd_alpha(u32 lights) {
+    return lights <= CROWD ? 0.8f : MAX(0.8f * sqrtf((f32)CROWD / (f32)lights), 0.2f);
+}
+
 // --- Legend: swatch and words, from the upper left down ---
 
 typedef struct Legend {
@@ -102,6 +107,8 @@ static void legend_row(Legend *legend, u32 color, const char *format, ...) {
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     f32 size = legend->size, x = legend->x, y = legend->y;
+    debug_patch(legend->draw, x - 1.0f, y - 0.1f * size - 1.0f, x + size + 1.0f,
+                y + 0.7f * size + 1.0f, RGB(0, 0, 0));
     debug_patch(legend->draw, x, y - 0.1f * size, x + size, y + 0.7f * size, color);
     note_add(legend->renderer, TEXT_LEGEND, x + 1.5f * size, y, size, WHITE, "%s", text);
     legend->y += 1.2f * size;
@@ -117,6 +124,7 @@ static void show_rects(Renderer *renderer, DebugDraw *draw) {
     f32 scale_y = 1.0f / vec3_length(from_array(frame->ray_up));
     f32 width = frame->viewport[0], height = frame->viewport[1];
     u32 shown = 0, count = mark_count(packet);
+    f32 alpha = crowd_alpha(packet->frame.counts[0] + packet->frame.counts[1]);
     Legend legend = legend_begin(renderer, draw, "screen rectangles of the shaded lights");
     for (u32 i = 0; i < count; i++) {
         PacketLightMark mark = mark_get(packet, i);
@@ -138,14 +146,18 @@ static void show_rects(Renderer *renderer, DebugDraw *draw) {
         shown++;
         debug_frame(draw, (left * 0.5f + 0.5f) * width, (0.5f - top * 0.5f) * height,
                     (right * 0.5f + 0.5f) * width, (0.5f - bottom * 0.5f) * height,
-                    with_alpha(is_spot(&mark) ? RGB(120, 200, 255) : RGB(255, 210, 60), 0.7f));
+                    with_alpha(is_spot(&mark) ? RGB(120, 200, 255) : RGB(255, 210, 60), alpha));
     }
     legend_row(&legend, RGB(255, 210, 60), "points");
     legend_row(&legend, RGB(120, 200, 255), "spots; %u rectangles in all", shown);
 }
 
 static void show_volumes(Renderer *renderer, DebugDraw *draw) {
-    u32 count = mark_count(draw->packet), points = 0, spots = 0;
+    u32 count = mark_count(draw->packet), points = 0, spots = 0, shown = 0;
+    for (u32 i = 0; i < count; i++) {
+        PacketLightMark mark = mark_get(draw->packet, i);
+        shown += is_shown(&mark);
+    }
     Legend legend = legend_begin(renderer, draw, "volumes of the shaded lights (dim: hidden)");
     const LightRecord *lights = PACKET_DATA(draw->packet, lights, LightRecord);
     for (u32 i = 0; i < count; i++) {
@@ -164,7 +176,10 @@ static void show_volumes(Renderer *renderer, DebugDraw *draw) {
             debug_cone(draw, p, from_array(mark.direction), mark.range, mark.cos_outer, color);
             spots++;
         } else {
-            debug_sphere(draw, p, mark.range, color);
+            if (shown <= CROWD)
+                debug_sphere(draw, p, mark.range, color);
+            else
+                debug_ball(draw, p, mark.range, with_alpha(color, crowd_alpha(shown)));
             points++;
         }
     }

@@ -33,7 +33,7 @@ static bool heat_scissor(const PassContext *c) {
 // steps after it find the picture where it always is.
 static void heat_copy_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(HDR_OTHER)}, .target_count = 1});
-    if (heat_scissor(c)) draw_fullscreen_with(c, PIPELINE_COPY, COPY_HDR, NULL, 0);
+    if (heat_scissor(c)) draw_fullscreen(c, PIPELINE_POST_COPY);
     gpu_cmd_end_rendering(c->cmd);
 }
 static const Pass heat_copy_pass = {
@@ -108,8 +108,8 @@ static void debug_record(const PassContext *c) {
 const Pass debug_pass = {
     "debug view",
     {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
-     USE_LISTS(READ_VERTEX), USE(TILE_DEPTHS, READ_VERTEX)},
-    11,
+     USE_LISTS(READ_VERTEX)},
+    12,
     debug_record,
     NULL,
     NULL};

@@ -16,7 +16,7 @@ static bool reads_a(const PassContext *c) { return c->split->mode != SPLIT_LINE;
 // at once.
 static void copy_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {TARGET(HDR_OTHER)}, .target_count = 1});
-    draw_fullscreen_with(c, PIPELINE_COPY, COPY_LDR, NULL, 0);
+    draw_fullscreen(c, PIPELINE_SPLIT_COPY);
     gpu_cmd_end_rendering(c->cmd);
 }
 static const Pass split_copy_pass = {

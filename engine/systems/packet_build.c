@@ -93,7 +93,7 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
 // has bent half-way, and coding.y, 1 / a bound of (1-t)^2 (kc + kl d + kq d^2) for t in 0..1.
 static void write_falloff(FrameRecord *frame) {
     f32 c = frame->attenuation[0], l = frame->attenuation[1], q = frame->attenuation[2];
-    f32 scale = 1.0f;
+    f32 scale = 0.1f; // of q alone: the curve is steep near the light
     if (c > 0.0f && q > 0.0f)
         scale = (sqrtf(l * l + 4.0f * c * q) - l) / (2.0f * q); // l d + q d^2 = c
     else if (l > 0.0f)
