@@ -11,8 +11,6 @@
 #define GBUFFER_GLSL
 #include "light.glsl"
 
-const bool GBUFFER_HAS_INDEX = LAYOUT <= GBUFFER_LAYOUT_HALF5;
-
 // Normalisation of the common lobe at a power (make_material of systems/packet_draws.c).
 float common_normalisation(float power) {
     uint kind = uint(frame.common_lobes.x);
@@ -93,7 +91,7 @@ void gbuffer_write(vec3 position, vec3 normal, vec3 albedo, uint material, out v
         t[3] = vec4(albedo, SHADOW != 0u ? shadow_visibility(position, normal) : 1.0);
     }
     if (LAYOUT == GBUFFER_LAYOUT_STARCRAFT2) {
-        t[0] = vec4(emissive.rgb, emissive.w);
+        t[0] = emissive;
         t[1] = vec4(normal, dot(eye, frame.ray_forward.xyz));
         t[2] = vec4(albedo, 1.0); // nothing occludes ambient light yet
         t[3] = specular;

@@ -116,7 +116,9 @@ float attenuation_lookup(float d2, float inv_d, float x) {
     if (ATTENUATION == 1u) return falloff_texel(x);
     if (ATTENUATION == 2u) {
         float scale = frame.attenuation.w, rest = scale / (d2 * inv_d + scale);
-        return clamp(1.0 - x, 0.0, 1.0) * rest * rest * frame.coding.y / falloff_texel(1.0 - rest);
+        // The table may end at 0, where only closed windows are.
+        return clamp(1.0 - x, 0.0, 1.0) * rest * rest * frame.coding.y /
+               max(falloff_texel(1.0 - rest), 1e-7);
     }
     float window = falloff_texel(x);
     return window * window * min(inv_d * inv_d, 1e4);

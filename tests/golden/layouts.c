@@ -26,11 +26,11 @@ static const struct {
     [LAYOUT_PACKED] = {105, 47, 1.45, 0.964},
     [LAYOUT_PACKED24] = {105, 47, 1.45, 0.964},
     // Positions are off by a few millimetres: close to a small light that is bright or dark.
-    [LAYOUT_HALF5] = {84, 2, 0.15, 0.999},
+    [LAYOUT_HALF5] = {84, 3, 0.15, 0.999},
     // Mirrored normals, and highlights without a colour or a lobe of their own.
     [LAYOUT_KILLZONE2] = {105, 47, 1.45, 0.964},
     // As half5; Phong, Oren-Nayar and Fresnel among other lobes are lost.
-    [LAYOUT_STARCRAFT2] = {84, 2, 0.15, 0.999},
+    [LAYOUT_STARCRAFT2] = {84, 3, 0.15, 0.999},
     // As killzone2, but Oren-Nayar is there in ten steps.
     [LAYOUT_IL] = {105, 47, 1.45, 0.964},
 };
