@@ -26,11 +26,12 @@ layout(std430, set = 0, binding = BINDING_LIST_INDICES) LIST_ACCESS buffer ListI
 layout(std430, set = 0, binding = BINDING_PIXEL_CLUSTERS) LIST_ACCESS buffer PixelClusterBuffer {
     uint pixel_clusters[];
 };
-
-// Which sample of a multisampled pixel PIXEL_CLUSTERS is asked for: one that the fragment covers
-// (findLSB(gl_SampleMaskIn[0])).
-uint cell_sample = 0u;
-const uint CELL_SAMPLES = SAMPLES > 1u ? SAMPLES : 1u;
+layout(std430, set = 0, binding = BINDING_CLUSTERS) LIST_ACCESS buffer ClusterBuffer {
+    uint clusters[];
+};
+layout(std430, set = 0, binding = BINDING_TILE_DEPTHS) LIST_ACCESS buffer TileDepthBuffer {
+    TileDepthRecord tile_depths[];
+};
 
 // Slice of depth, see FrameRecord.slices.
 uint cell_slice(float view_depth) {
@@ -38,14 +39,30 @@ uint cell_slice(float view_depth) {
     return uint(clamp(slice, 0.0, float(frame.grid.z) - 1.0));
 }
 
+// A pixel of several samples may lie in several clusters, and a fragment is shaded at the pixel's
+// centre, whose depth no sample need have: its slice is looked up among those of the tile. One that
+// is not there (a surface seen edge on, beyond whose rim the centre lies) uses all lights.
+uint cell_of_slice(uint tile, uint slice) {
+    uint first = tile_depths[tile].mask.w;
+    uint count = first == CLUSTER_ALL ? 0u : tile_depths[tile].mask.z;
+    uint place = count > 0u ? first : CLUSTER_ALL;
+    uint key = tile << CLUSTER_TILE_SHIFT | slice;
+    for (uint step = CLUSTER_SLICES_CAP / 2; step > 0u; step >>= 1u) {
+        uint next = place + step;
+        bool before = next < first + count && clusters[next] <= key;
+        place = before ? next : place;
+    }
+    return count > 0u && clusters[place] == key ? place : CLUSTER_ALL;
+}
+
 // The cell of a pixel at a view depth in m.
 uint cell_of(uvec2 pixel, float view_depth) {
+    uvec2 at = pixel >> TILE_SHIFT;
+    uint tile = at.y * frame.grid.x + at.x;
     if (CLUSTERED == 2u)
-        return pixel_clusters[(pixel.y * uint(frame.viewport.x) + pixel.x) * CELL_SAMPLES + cell_sample];
-    uvec2 tile = pixel >> TILE_SHIFT;
-    uint cell = tile.y * frame.grid.x + tile.x;
-    if (CLUSTERED == 1u) cell += cell_slice(view_depth) * frame.grid.x * frame.grid.y;
-    return cell;
+        return SAMPLES > 1u ? cell_of_slice(tile, cell_slice(view_depth))
+                            : pixel_clusters[pixel.y * uint(frame.viewport.x) + pixel.x];
+    return CLUSTERED == 1u ? tile + cell_slice(view_depth) * frame.grid.x * frame.grid.y : tile;
 }
 
 // CellRecord.list.
@@ -107,36 +124,34 @@ vec3 cell_light_list(Surface s, uvec4 list, bool all) {
 }
 
 // Sum of the lights of a cell, for fragment shaders and others whose lanes may be off. Pixels of a
-// subgroup that lie in several cells take turns, a cell at a time.
+// subgroup that lie in several cells take turns, a cell at a time; all lanes go along, and those of
+// other cells keep their sum.
 vec3 cell_light(Surface s, uint cell) {
-    uvec4 list = cell_list(cell);
+    uvec4 list = cell_list(cell), lanes = subgroupBallot(true);
     bool all = false;
     if (CLUSTERED != 0u) {
         // So many cells with so many lights that the loops would be cut: all lights instead, which
-        // is the same sum (a light that is not in the list adds 0).
+        // is the same sum (a light that is not in the list adds 0). A subgroup of the software
+        // driver lies in one tile.
         uint total = 0u;
-        for (;;) {
-            uint turn = subgroupBroadcastFirst(cell);
-            uint lights = subgroupBroadcastFirst(list.y + list.z);
-            total += lights;
-            if (turn == cell) break;
+        for (uvec4 open = lanes; subgroupBallotBitCount(open) > 0u;) {
+            uint leader = subgroupBallotFindLSB(open);
+            total += subgroupShuffle(list.y + list.z, leader);
+            open &= ~subgroupBallot(cell == subgroupShuffle(cell, leader));
         }
-        // The lane whose turn came last has added them all.
-        all = subgroupMax(total) > CELL_ITERATIONS_SAFE;
+        all = total > CELL_ITERATIONS_SAFE;
         if (all) {
             cell = CLUSTER_ALL;
             list = CLUSTERED == 2u ? cell_list(cell) : cell_list_all();
         }
     }
     vec3 sum = vec3(0.0);
-    for (;;) {
-        uint turn = subgroupBroadcastFirst(cell);
-        if (turn == cell) {
-            uvec4 uniform_list = uvec4(subgroupBroadcastFirst(list.x), subgroupBroadcastFirst(list.y),
-                                       subgroupBroadcastFirst(list.z), subgroupBroadcastFirst(list.w));
-            sum = cell_light_list(s, uniform_list, all);
-            break;
-        }
+    for (uvec4 open = lanes; subgroupBallotBitCount(open) > 0u;) {
+        uint leader = subgroupBallotFindLSB(open);
+        bool turn = cell == subgroupShuffle(cell, leader);
+        vec3 turn_sum = cell_light_list(s, subgroupShuffle(list, leader), all);
+        sum = turn ? turn_sum : sum;
+        open &= ~subgroupBallot(turn);
     }
     return sum;
 }

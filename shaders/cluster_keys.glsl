@@ -28,7 +28,8 @@ void main() {
     ivec2 size = ivec2(frame.viewport.xy);
     uint side = 1u << TILE_SHIFT, pixels = side * side, set = gl_SubgroupID * SEEN_WORDS;
     for (uint tile = tile_first(); tile < tile_total(); tile += tile_stride()) {
-        for (uint w = gl_SubgroupInvocationID; w < SEEN_WORDS; w += gl_SubgroupSize) seen[set + w] = 0u;
+        for (uint w = gl_SubgroupInvocationID; w < SEEN_WORDS; w += gl_SubgroupSize)
+            seen[set + w] = 0u;
         subgroupMemoryBarrierShared();
         subgroupBarrier();
         ivec2 corner = ivec2(uvec2(tile % flow.grid.x, tile / flow.grid.x) << TILE_SHIFT);

@@ -196,11 +196,14 @@ void gather_tree(Volume v, uint root, bool any, uint place, uint end, bool spot)
             for (uint b = 0u; b < GRID_NODE_WIDTH; b += gl_SubgroupSize) {
                 uint child = b + gl_SubgroupInvocationID;
                 bool there = child < min(children, GRID_NODE_WIDTH);
+                // Both kinds of test are made, on something harmless where they do not apply: a
+                // branch would not save the work on the software driver.
                 uint light = light_indices[flow.counts3.w + (leaves && there ? first + child : 0u)];
+                uint inner_child = leaves || !there ? at : first + child;
                 ViewLight tested = view_light(leaves ? light : spot ? flow.counts.x : 0u, spot);
-                bool hit = there && (leaves ? light_in_sides(v, tested, spot) &&
-                                                  light_in_depths(v, tested, spot)
-                                            : node_in_volume(v, grid_nodes[leaves ? at : first + min(child, children - 1u)]));
+                bool hit_light = light_in_sides(v, tested, spot) && light_in_depths(v, tested, spot);
+                bool hit_node = node_in_volume(v, grid_nodes[inner_child]);
+                bool hit = there && (leaves ? hit_light : hit_node);
                 count = gather(count, hit && leaves, light);
                 // Subgroups of 4 take two goes; wider ones leave lanes idle.
                 inner |= (subgroupBallot(hit && !leaves).x & 0xFFu) << b;

@@ -31,7 +31,8 @@ void main() {
         list_cells[CLUSTER_ALL].list = list_of_all();
     }
     barrier();
-    uint at = sums[lane], capacity = min(list_cells.length(), clusters.length()), own_fallbacks = 0u;
+    uint capacity = min(list_cells.length(), clusters.length());
+    uint at = sums[lane], own_fallbacks = 0u;
     for (uint i = first; i < last; i++) {
         uint count = tile_depths[i].mask.z;
         bool fits = at + count <= capacity;

@@ -5,9 +5,6 @@
 #include "gbuffer.glsl"
 #include "cells.glsl"
 
-layout(std430, set = 0, binding = BINDING_TILE_DEPTHS) readonly buffer TileDepthBuffer {
-    TileDepthRecord tile_depths[];
-};
 layout(location = 0) out vec4 out_color;
 
 // Blue, cyan, green, yellow, red, white for 0..1.

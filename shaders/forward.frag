@@ -20,7 +20,6 @@ layout(location = 0) out vec4 out_color;
 
 vec3 local_light(Surface s) {
     if (CELL_LISTS == 0u) return cell_light_list(s, cell_list_all(), true);
-    if (SAMPLES > 1u) cell_coverage = uint(gl_SampleMaskIn[0]);
     // Lanes that only help with derivatives may lie beside the screen.
     uvec2 pixel = uvec2(clamp(gl_FragCoord.xy, vec2(0.0), frame.viewport.xy - 1.0));
     return cell_light(s, cell_of(pixel, frame.camera.w / max(gl_FragCoord.z, 1e-9)));

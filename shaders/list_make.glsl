@@ -10,14 +10,12 @@
 #define LIST_ACCESS
 #include "cells.glsl"
 
-layout(std430, set = 0, binding = BINDING_TILE_DEPTHS) buffer TileDepthBuffer {
-    TileDepthRecord tile_depths[];
-};
-layout(std430, set = 0, binding = BINDING_CLUSTERS) buffer ClusterBuffer { uint clusters[]; };
 layout(std430, set = 0, binding = BINDING_GRID_COUNTERS) buffer CounterBuffer {
     uint grid_counters[];
 };
 
+// Samples of a pixel that have keys or depths.
+const uint CELL_SAMPLES = SAMPLES > 1u ? SAMPLES : 1u;
 // Subgroups of a group of 64; subgroups have 4 lanes at least.
 const uint SUBGROUPS_CAP = 16u;
 

@@ -8,7 +8,8 @@ uint walk(Volume v, uint first, uint last, uint at, bool spot) {
     for (uint b = first; b < last; b += gl_SubgroupSize) {
         uint index = b + gl_SubgroupInvocationID;
         ViewLight light = view_light(min(index, last - 1u), spot);
-        bool hit = index < last && light_in_sides(v, light, spot) && light_in_depths(v, light, spot);
+        bool hit =
+            index < last && light_in_sides(v, light, spot) && light_in_depths(v, light, spot);
         uvec4 ballot = subgroupBallot(hit);
 #ifdef FILL
         if (hit) list_indices[at + subgroupBallotExclusiveBitCount(ballot)] = index;

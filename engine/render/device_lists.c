@@ -94,7 +94,6 @@ bool device_lists_resize(Renderer *renderer, const Packet *packet) {
     }
     bool depths = clusters || tile_lists_refined(settings) || tile_lists_made(settings) ||
                   settings->view == VIEW_TILE_DEPTH;
-    u64 samples = settings->msaa == MSAA_4 && settings->path == PATH_CLUSTERED_FORWARD ? 4 : 1;
     u64 index_limit = lists->index_limit * sizeof(u32);
     u64 cluster_limit = lists->cluster_limit;
     bool ok = buffer_ensure(renderer, RESOURCE_LIST_CELLS, cells * sizeof(CellRecord),
@@ -106,7 +105,7 @@ bool device_lists_resize(Renderer *renderer, const Packet *packet) {
               buffer_ensure(renderer, RESOURCE_CLUSTERS, places * sizeof(u32),
                             cluster_limit * sizeof(u32)) &&
               buffer_ensure(renderer, RESOURCE_PIXEL_CLUSTERS,
-                            clusters ? pixels * samples * sizeof(u32) : 0, 0) &&
+                            clusters ? pixels * renderer->samples * sizeof(u32) : 0, 0) &&
               buffer_ensure(renderer, RESOURCE_GRID_COUNTERS, GRID_COUNTER_COUNT * sizeof(u32), 0);
     if (!lists->reports.id)
         lists->reports = gpu_create_buffer(

@@ -56,7 +56,8 @@ extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, clu
         &cluster_list_scan_pass, &cluster_fill_pass, &cluster_report_pass
 // What a pass reads that shades by lists: USE_LISTS(READ_VERTEX) or USE_LISTS(STORAGE_READ_COMPUTE).
 #define USE_LISTS(use_)                                                                            \
-    USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_), USE(CLUSTERS, use_)
+    USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_),                     \
+        USE(CLUSTERS, use_), USE(TILE_DEPTHS, use_)
 // post.c
 extern const Pass post_pass, debug_pass;
 // debug_views.c

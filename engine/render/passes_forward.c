@@ -52,7 +52,7 @@ const Pass forward_lists_pass = {"forward",
                                  {OVERWRITE(HDR, COLOR_TARGET), OVERWRITE(HDR_MS, COLOR_TARGET),
                                   USE(DEPTH, DEPTH_TEST), USE(DEPTH_MS, DEPTH_TEST),
                                   USE(SHADOW_MAP, SAMPLED_FRAGMENT), USE_LISTS(READ_VERTEX)},
-                                 9,
+                                 10,
                                  forward_lists_record,
                                  NULL,
                                  NULL};

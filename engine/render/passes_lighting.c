@@ -55,6 +55,6 @@ const Pass tiled_pass = {"lighting",
                          {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
                           USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE),
                           USE_LISTS(STORAGE_READ_COMPUTE)},
-                         12,
+                         13,
                          tiled_record,
                          NULL};

@@ -37,11 +37,14 @@ static bool tile_depth_needed(const PassContext *c) {
     return (settings_tiled(settings) && settings->tile_depth != TILE_DEPTH_OFF) ||
            (settings->view == VIEW_TILE_DEPTH && !cluster_lists_made(settings));
 }
-static void tile_depth_record(const PassContext *c) { dispatch_tiles(c, PIPELINE_TILE_DEPTH); }
+static void tile_depth_record(const PassContext *c) {
+    dispatch_tiles(c, c->renderer->samples > 1 ? PIPELINE_TILE_DEPTH_MS : PIPELINE_TILE_DEPTH);
+}
 const Pass tile_depth_pass = {"tile depth",
-                              {USE(DEPTH, SAMPLED_COMPUTE), OVERWRITE(TILE_DEPTHS, STORAGE_COMPUTE),
+                              {USE(DEPTH, SAMPLED_COMPUTE), USE(DEPTH_MS, SAMPLED_COMPUTE),
+                               OVERWRITE(TILE_DEPTHS, STORAGE_COMPUTE),
                                OVERWRITE(GRID_COUNTERS, STORAGE_COMPUTE)},
-                              3,
+                              4,
                               tile_depth_record,
                               tile_depth_needed,
                               NULL};
@@ -95,15 +98,17 @@ const Pass list_fill_pass = {"list fill",
 static bool clusters_needed(const PassContext *c) {
     return cluster_lists_made(&c->packet->settings);
 }
-static void cluster_keys_record(const PassContext *c) { dispatch_tiles(c, PIPELINE_CLUSTER_KEYS); }
-const Pass cluster_keys_pass = {"cluster keys",
-                                {USE(DEPTH, SAMPLED_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
-                                 OVERWRITE(TILE_DEPTHS, STORAGE_COMPUTE),
-                                 OVERWRITE(PIXEL_CLUSTERS, STORAGE_COMPUTE)},
-                                8,
-                                cluster_keys_record,
-                                clusters_needed,
-                                NULL};
+static void cluster_keys_record(const PassContext *c) {
+    dispatch_tiles(c, c->renderer->samples > 1 ? PIPELINE_CLUSTER_KEYS_MS : PIPELINE_CLUSTER_KEYS);
+}
+const Pass cluster_keys_pass = {
+    "cluster keys",
+    {USE(DEPTH, SAMPLED_COMPUTE), USE(DEPTH_MS, SAMPLED_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+     OVERWRITE(TILE_DEPTHS, STORAGE_COMPUTE), OVERWRITE(PIXEL_CLUSTERS, STORAGE_COMPUTE)},
+    9,
+    cluster_keys_record,
+    clusters_needed,
+    NULL};
 
 static void cluster_scan_record(const PassContext *c) { dispatch_one(c, PIPELINE_CLUSTER_SCAN); }
 const Pass cluster_scan_pass = {"cluster scan",
@@ -159,8 +164,9 @@ const Pass cluster_fill_pass = {
 
 // --- What it took, for the stats and the next frame's buffers ---
 
-static bool list_report_needed(const PassContext *c) {
-    return device_lists_used(&c->packet->settings);
+static bool tile_report_needed(const PassContext *c) {
+    const RenderSettings *settings = &c->packet->settings;
+    return tile_lists_refined(settings) || tile_lists_made(settings);
 }
 static void list_report_record(const PassContext *c) {
     Renderer *r = c->renderer;
@@ -173,8 +179,14 @@ static void list_report_record(const PassContext *c) {
                         at * size, size);
 }
 const Pass list_report_pass = {
-    "list report", {USE(GRID_COUNTERS, COPY_SOURCE)}, 1, list_report_record, list_report_needed,
+    "list report", {USE(GRID_COUNTERS, COPY_SOURCE)}, 1, list_report_record, tile_report_needed,
     NULL};
+const Pass cluster_report_pass = {"cluster report",
+                                  {USE(GRID_COUNTERS, COPY_SOURCE)},
+                                  1,
+                                  list_report_record,
+                                  clusters_needed,
+                                  NULL};
 
 // --- Shading ---
 
@@ -188,7 +200,7 @@ const Pass clustered_pass = {"lighting",
                              {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
                               USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE),
                               USE_LISTS(STORAGE_READ_COMPUTE)},
-                             11,
+                             13,
                              clustered_record,
                              NULL,
                              NULL};
