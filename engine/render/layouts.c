@@ -27,7 +27,7 @@ const LayoutRow layout_table[LAYOUT_COUNT] = {
     [LAYOUT_LEAN] = {.name = "lean",
                      .targets = {GPU_FORMAT_RGBA8_SRGB, GPU_FORMAT_RG16},
                      .position_normal_bytes = 4,
-                     .loses = "nothing to speak of: normals within 0.003 degrees"},
+                     .loses = "nothing to speak of: normals within 0.004 degrees"},
     [LAYOUT_WIDE] = {.name = "wide",
                      .targets = {GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA8_SRGB},
                      .position_normal_bytes = 32,
@@ -74,6 +74,13 @@ u32 layout_bytes(const LayoutRow *row) {
     for (u32 i = 0; i < COUNT_OF(row->targets); i++)
         if (row->targets[i]) bytes += gpu_format_bytes(row->targets[i]);
     return bytes;
+}
+
+RendererLayoutInfo renderer_layout_info(GbufferLayout layout) {
+    const LayoutRow *row = &layout_table[layout];
+    return (RendererLayoutInfo){.name = row->name,
+                                .bytes = layout_bytes(row),
+                                .position_normal_bytes = row->position_normal_bytes};
 }
 
 // Shaders know these enums as numbers of shared.h.
