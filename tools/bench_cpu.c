@@ -2,6 +2,7 @@
 // Data in: random arrays with a fixed seed, or a level. Data out: bench results.
 #include "../engine/base/clock.h"
 #include "../engine/base/random.h"
+#include "../engine/systems/light_hierarchy.h"
 #include "bench.h"
 #include <stdio.h>
 #include <string.h>
@@ -77,54 +78,90 @@ bool bench_cull(Bench *bench, const char *id) {
 
 // --- grid ---
 
+typedef struct GridLights {
+    FrameRecord frame;
+    LightRecord *lights;
+    SpotRecord *spots;
+} GridLights;
+
+typedef enum GridWay { GRID_WAY_RECT, GRID_WAY_FRUSTUM, GRID_WAY_CLUSTERS, GRID_WAY_TREE } GridWay;
 typedef struct GridData {
-    LightGridInput input;
+    const GridLights *lights;
+    GridWay way;
+    TileSize tile_px;
     Arena *arena;
 } GridData;
 
+// The whole step of a frame: from records to lists.
 static f64 grid_build(void *context) {
     GridData *data = context;
     u64 mark = arena_mark(data->arena);
+    RenderSettings settings = settings_default();
+    settings.tile_px = data->tile_px;
     f64 start = clock_now_ms();
-    light_grid_build(&data->input, data->arena);
+    LightGridInput input = light_grid_input(&data->lights->frame, data->lights->lights,
+                                            data->lights->spots, &settings, data->arena);
+    input.method = data->way == GRID_WAY_RECT ? GRID_RECT : GRID_FRUSTUM;
+    if (data->way == GRID_WAY_CLUSTERS)
+        input.slices = light_cluster_slices(&input, CLUSTER_CELLS_CAP);
+    if (data->way == GRID_WAY_TREE)
+        light_hierarchy_build(&input, data->arena);
+    else
+        light_grid_build(&input, data->arena);
     f64 ms = clock_now_ms() - start;
     arena_rewind(data->arena, mark);
     return ms;
 }
 
-// Lights spread over the view volume up to 40 m, half a metre to three metres large.
-static void grid_fill(GridData *data, u32 count, Arena *arena) {
-    f32 *columns[4];
-    for (u32 c = 0; c < 4; c++) columns[c] = ARENA_PUSH_COLUMN(arena, f32, count + SIMD_WIDTH);
-    f32 tan_y = det_tan(DEG_TO_RAD(30.0f)), aspect = 1280.0f / 720.0f;
+// Lights spread over the view volume up to 40 m, half a metre to three metres large; a quarter of
+// them spots of 10 to 60 degrees to either side. The camera stands in the origin and looks down -z.
+static void grid_fill(GridLights *out, u32 count, Arena *arena) {
+    f32 tan_y = det_tan(DEG_TO_RAD(30.0f)), tan_x = tan_y * 1280.0f / 720.0f;
+    Mat4 view = mat4_identity();
+    memcpy(out->frame.view, view.m, sizeof out->frame.view);
+    out->frame.camera[3] = 0.1f;
+    out->frame.ray_right[0] = tan_x;
+    out->frame.ray_up[1] = tan_y;
+    out->frame.viewport[0] = 1280, out->frame.viewport[1] = 720;
+    u32 points = count - count / 4;
+    out->frame.counts[0] = out->frame.counts3[0] = points;
+    out->frame.counts[1] = out->frame.counts3[1] = count - points;
+    out->lights = ARENA_PUSH(arena, LightRecord, count);
+    out->spots = ARENA_PUSH(arena, SpotRecord, count - points);
     for (u32 i = 0; i < count; i++) {
-        f32 z = random_range(SEED, 2, i, -40, -0.5f);
-        columns[0][i] = random_range(SEED, 0, i, -1, 1) * -z * tan_y * aspect;
-        columns[1][i] = random_range(SEED, 1, i, -1, 1) * -z * tan_y;
-        columns[2][i] = z;
-        columns[3][i] = random_range(SEED, 3, i, 0.5f, 3);
+        f32 depth = random_range(SEED, 2, i, 0.5f, 40), range = random_range(SEED, 3, i, 0.5f, 3);
+        f32 *at = out->lights[i].position;
+        at[0] = random_range(SEED, 0, i, -1, 1) * depth * tan_x;
+        at[1] = random_range(SEED, 1, i, -1, 1) * depth * tan_y;
+        at[2] = -depth;
+        at[3] = 1.0f / (range * range);
+        if (i < points) continue;
+        Vec3 way =
+            vec3_normalize(vec3(random_range(SEED, 4, i, -1, 1), random_range(SEED, 5, i, -1, 1),
+                                random_range(SEED, 6, i, -1, 1)));
+        f32 *direction = out->spots[i - points].direction;
+        direction[0] = way.x, direction[1] = way.y, direction[2] = way.z;
+        direction[3] = det_cos(DEG_TO_RAD(random_range(SEED, 7, i, 10, 60)));
     }
-    data->arena = arena;
-    data->input = (LightGridInput){.x = columns[0],
-                                   .y = columns[1],
-                                   .z = columns[2],
-                                   .radius = columns[3],
-                                   .count = count,
-                                   .point_count = count,
-                                   .width_px = 1280,
-                                   .height_px = 720,
-                                   .tile_px = 16,
-                                   .near = 0.1f,
-                                   .scale_x = 1.0f / (tan_y * aspect),
-                                   .scale_y = 1.0f / tan_y};
 }
 
 bool bench_grid(Bench *bench, const char *id) {
-    GridData data[2];
-    grid_fill(&data[0], 1000, &bench->arena);
-    grid_fill(&data[1], 10000, &bench->arena);
-    BenchVariant variants[] = {{"1,000 lights", grid_build, &data[0], {0}},
-                               {"10,000 lights", grid_build, &data[1], {0}}};
+    GridLights few = {0}, many = {0};
+    grid_fill(&few, 1000, &bench->arena);
+    grid_fill(&many, 10000, &bench->arena);
+#define ROW(lights, way, tile) &(GridData){&lights, GRID_WAY_##way, tile, &bench->arena}
+    BenchVariant variants[] = {
+        {"1,000 lights, rectangles", grid_build, ROW(few, RECT, TILE_16), {0}},
+        {"1,000 lights, frustums", grid_build, ROW(few, FRUSTUM, TILE_16), {0}},
+        {"1,000 lights, clusters of 32 px", grid_build, ROW(few, CLUSTERS, TILE_32), {0}},
+        {"1,000 lights, clusters of 64 px", grid_build, ROW(few, CLUSTERS, TILE_64), {0}},
+        {"10,000 lights, rectangles", grid_build, ROW(many, RECT, TILE_16), {0}},
+        {"10,000 lights, frustums", grid_build, ROW(many, FRUSTUM, TILE_16), {0}},
+        {"10,000 lights, clusters of 32 px", grid_build, ROW(many, CLUSTERS, TILE_32), {0}},
+        {"10,000 lights, clusters of 64 px", grid_build, ROW(many, CLUSTERS, TILE_64), {0}},
+        {"10,000 lights, hierarchy", grid_build, ROW(many, TREE, TILE_32), {0}},
+    };
+#undef ROW
     bench_variants(bench, id, variants, COUNT_OF(variants), bench->quick ? 9 : 41);
     return true;
 }

@@ -17,6 +17,7 @@
 #define SLICE_SLACK (1.0 / 128.0)
 // The first slice may be this part of the smallest light's radius long: finer tells nothing more.
 #define FINEST_PART 0.25f
+#define FEW_SLICES  8
 
 // ---- slices ----
 
@@ -39,7 +40,9 @@ ClusterSlices light_cluster_slices(const LightGridInput *in, u32 cells_cap) {
         farthest = MAX(farthest, back);
         smallest = MIN(smallest, radius);
     }
-    u32 cap = MIN(CLUSTER_SLICES_CAP, cells_cap / (tiles_x * tiles_y));
+    u32 tiles = tiles_x * tiles_y, cap = MIN(CLUSTER_SLICES_CAP, cells_cap / tiles);
+    // Small tiles: a few slices are worth more cells.
+    if (cap < FEW_SLICES) cap = (u32)MIN(FEW_SLICES, (u64)cells_cap * FEW_SLICES / tiles);
     f32 part = 2.0f / (in->scale_y * (f32)tiles_y); // a cluster's height by its depth
     // The cap is for lenses from hostile files; a single row of tiles is the widest real one.
     part = part > 1e-4f ? MIN(part, 1e3f) : 1e-4f;

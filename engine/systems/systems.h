@@ -109,8 +109,9 @@ typedef struct LightGrid {
 LightGrid light_grid_build(const LightGridInput *input, Arena *arena);
 // Slices for these lights (light_clusters.c): near-cubic clusters (specification of direct
 // lighting, 6.3) from the eye to the farthest light, fewer and longer ones if there would be more
-// than CLUSTER_SLICES_CAP slices or cells_cap cells.
-#define CLUSTER_CELLS_CAP (1u << 17) // 2 MiB of records, made and uploaded every frame
+// than CLUSTER_SLICES_CAP slices or cells_cap cells. (With tiles so small that these are not even
+// eight slices, up to eight times as many cells.)
+#define CLUSTER_CELLS_CAP (1u << 15) // half a MiB of records, made and uploaded every frame
 ClusterSlices light_cluster_slices(const LightGridInput *input, u32 cells_cap);
 
 // --- Packet (packet_build.c) ---
