@@ -13,6 +13,7 @@ layout(location = 4) flat out uint out_material;
 layout(location = 5) out vec3 out_position;
 layout(location = 6) out vec3 out_vertex_light;   // irradiance / pi
 layout(location = 7) flat out float out_vertex_share; // of it, 0..1
+layout(location = 8) flat out uint out_entity;    // drawable's: path `multipass`
 
 void main() {
     vec3 p = mesh_world_position();
@@ -23,6 +24,7 @@ void main() {
     out_color = in_color;
     out_material = in_ids.x;
     out_position = p;
+    out_entity = in_ids.y;
     out_vertex_light = VERTEX_LIGHTING != 0u ? vertex_light(p, out_normal, gl_Position) : vec3(0.0);
     out_vertex_share = VERTEX_LIGHTING != 0u ? uintBitsToFloat(in_ids.z) : 0.0;
 }

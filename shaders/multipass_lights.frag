@@ -1,10 +1,12 @@
 #version 460
 // multipass_lights.frag: path `multipass`: one group of lights, added to what is there. Always as
 // many as a group holds, so that the loop has no condition; places after the last light take the
-// dummy, which lights nothing. Points and spots (SPOTS) are groups of their own.
+// dummy, which lights nothing. Points and spots (SPOTS) are groups of their own. Only the owner of a
+// pixel is lit (multipass_base.frag): another surface may lie in the same plane.
 #extension GL_GOOGLE_include_directive : require
 #include "material.glsl"
 #include "light.glsl"
+#include "multipass_owner.glsl"
 
 layout(push_constant) uniform Group {
     uint first, end; // light indices
@@ -18,6 +20,8 @@ layout(location = 3) in vec4 in_color;
 layout(location = 4) flat in uint in_material;
 layout(location = 5) in vec3 in_position;
 
+
+layout(set = 0, binding = BINDING_HDR_OTHER) uniform sampler2D hdr_other; // owners
 layout(location = 0) out vec4 out_color;
 
 void main() {
@@ -36,5 +40,6 @@ void main() {
             sum += light_point(s, light_position(index), light_color(index));
         }
     }
-    out_color = vec4(sum * palette_emissive(in_material).w, 0.0);
+    bool owns = texelFetch(hdr_other, ivec2(gl_FragCoord.xy), 0) == pixel_owner();
+    out_color = vec4(owns ? sum * palette_emissive(in_material).w : vec3(0.0), 0.0);
 }

@@ -214,6 +214,7 @@ bool gpu_device_create(Gpu *gpu) {
     // The structs that were asked become the structs that enable: keep the few that are used.
     gpu->features = (VkPhysicalDeviceFeatures){
         .depthClamp = has.features.depthClamp,
+        .geometryShader = has.features.geometryShader, // for gl_PrimitiveID of fragments
         .samplerAnisotropy = has.features.samplerAnisotropy,
         .fragmentStoresAndAtomics = has.features.fragmentStoresAndAtomics,
         .vertexPipelineStoresAndAtomics = has.features.vertexPipelineStoresAndAtomics,
@@ -234,6 +235,7 @@ bool gpu_device_create(Gpu *gpu) {
         .shaderDemoteToHelperInvocation = has13.shaderDemoteToHelperInvocation,
     };
     gpu->info.depth_clamp = gpu->features.depthClamp;
+    gpu->info.primitive_id = gpu->features.geometryShader;
     gpu->info.max_anisotropy =
         gpu->features.samplerAnisotropy ? gpu->limits.maxSamplerAnisotropy : 0.0f;
 

@@ -64,6 +64,7 @@ typedef struct GpuInfo {
     bool subgroup_compute, subgroup_fragment;
     bool depth_clamp;                // GpuPipelineDesc.depth_clamp works (else it is ignored)
     bool samples_4;                  // 4 samples a pixel, of RGBA16F and D32F
+    bool primitive_id;               // fragment shaders may ask for gl_PrimitiveID
 } GpuInfo;
 
 // NULL with LOG GPU_NONE that says what to do (install a driver package ...) when there is no

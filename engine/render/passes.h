@@ -37,7 +37,8 @@ GpuTarget depth_target(const PassContext *c, bool clear);
 // passes_geometry.c
 extern const Pass shadow_pass, gbuffer_pass, over_pass;
 // passes_forward.c
-extern const Pass prepass_pass, forward_pass, forward_lists_pass, multipass_pass, samples_pass;
+extern const Pass prepass_pass, forward_pass, forward_lists_pass, multipass_base_pass,
+    multipass_pass, samples_pass;
 // volumes.c
 extern const Pass base_pass, volumes_pass, volumes_stencil_pass;
 // passes_lighting.c

@@ -69,25 +69,43 @@ static void draw_groups(const PassContext *c, PipelineKind kind, u32 first, u32 
     }
 }
 
-static void multipass_record(const PassContext *c) {
-    begin(c, &(GpuRendering){.targets = {CLEARED(ACCUMULATION)},
-                             .target_count = 1,
+// Where surfaces lie in one plane, the last one drawn is seen, and only that one may be lit: the
+// base pass notes whose each pixel is, in HDR_OTHER, which nobody needs before the post chain.
+static void multipass_base_record(const PassContext *c) {
+    begin(c, &(GpuRendering){.targets = {CLEARED(ACCUMULATION), CLEARED(HDR_OTHER)},
+                             .target_count = 2,
                              .depth = TARGET(DEPTH),
                              .depth_read_only = true});
     draw_list(c, PIPELINE_MULTIPASS_BASE, c->packet->opaque_draws, false);
     draw_list(c, PIPELINE_MULTIPASS_BASE, c->packet->mask_draws, false);
+    gpu_cmd_end_rendering(c->cmd);
+}
+const Pass multipass_base_pass = {"base",
+                                  {OVERWRITE(ACCUMULATION, COLOR_TARGET),
+                                   OVERWRITE(HDR_OTHER, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
+                                   USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                                  4,
+                                  multipass_base_record,
+                                  NULL,
+                                  NULL};
+
+static void multipass_record(const PassContext *c) {
+    begin(c, &(GpuRendering){.targets = {TARGET(ACCUMULATION)},
+                             .target_count = 1,
+                             .depth = TARGET(DEPTH),
+                             .depth_read_only = true});
     const FrameRecord *frame = &c->packet->frame;
     draw_groups(c, PIPELINE_MULTIPASS_POINTS, 0, frame->counts[0]);
     draw_groups(c, PIPELINE_MULTIPASS_SPOTS, frame->counts[0], frame->counts[1]);
     gpu_cmd_end_rendering(c->cmd);
 }
-const Pass multipass_pass = {"lighting",
-                             {OVERWRITE(ACCUMULATION, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
-                              USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-                             3,
-                             multipass_record,
-                             NULL,
-                             NULL};
+const Pass multipass_pass = {
+    "lighting",
+    {USE(ACCUMULATION, COLOR_TARGET), USE(DEPTH, DEPTH_TEST), USE(HDR_OTHER, SAMPLED_FRAGMENT)},
+    3,
+    multipass_record,
+    NULL,
+    NULL};
 
 // --- From samples to pixels: the average radiance, the first sample's depth ---
 

@@ -45,6 +45,7 @@ typedef struct PipelineRow {
     u32 target_count;
     bool to_swapchain, to_gbuffer; // the targets of the layout
     bool has_depth, is_shadow;
+    bool needs_primitive_id;
     bool may_be_ms; // drawn to the multisampled targets if the path has them
     GpuStencil stencil;
     GpuDepth depth;
@@ -128,6 +129,7 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                 .vertex_layout = GPU_VERTEX_MESH,
                                 .spec_mask = SPEC_LIGHTING | SPEC_LISTS | SPEC_BIT(SPEC_TEXTURES)},
     [PIPELINE_MULTIPASS_BASE] = {.label = "multipass base",
+                                 .needs_primitive_id = true,
                                  .vertex = "forward.vert",
                                  .fragment = "multipass_base.frag",
                                  .targets = {RESOURCE_ACCUMULATION, RESOURCE_HDR_OTHER},
@@ -138,7 +140,7 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                  .spec_mask = SPEC_LIGHTING | SPEC_BIT(SPEC_TEXTURES)},
 #define MULTIPASS(label_, specs)                                                                   \
     {                                                                                              \
-        .label = "multipass " label_, .vertex = "forward.vert",                                    \
+        .label = "multipass " label_, .needs_primitive_id = true, .vertex = "forward.vert",        \
         .fragment = "multipass_lights.frag", .targets = {RESOURCE_ACCUMULATION},                   \
         .target_count = 1, .has_depth = true, .depth = GPU_DEPTH_EQUAL, .blend = GPU_BLEND_ADD,    \
         .vertex_layout = GPU_VERTEX_MESH, .spec_mask = (specs) | SPEC_BIT(SPEC_TEXTURES)           \
@@ -384,6 +386,11 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .vertex_layout = row->vertex_layout,
         .depth_clamp = row->is_shadow,
     };
+    if (row->needs_primitive_id && !gpu_info(renderer->gpu)->primitive_id) {
+        LOG(RENDER_LIMIT, "\"%s\" needs primitive numbers in fragments, which this device lacks",
+            row->label);
+        return (GpuPipeline){0};
+    }
     memcpy(desc.spec, key->spec, sizeof key->spec);
     const GpuFormat *gbuffer = layout_table[key->spec[SPEC_LAYOUT]].targets;
     while (row->to_gbuffer && desc.target_count < COUNT_OF(layout_table[0].targets) &&
