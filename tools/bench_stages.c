@@ -136,8 +136,8 @@ static void use_stage(RenderSettings *settings, Stage stage) {
 }
 
 typedef struct StageScene {
-    const char *name, *level;
-    u32 lights; // of the level's
+    const char *name, *level, *camera; // camera NULL = the level's main one
+    u32 lights;                        // at most, of the level's
     f64 shaded[STAGE_COUNT], manager_ms[STAGE_COUNT], frame_ms[STAGE_COUNT], gain[STAGE_COUNT];
     f64 p10[STAGE_COUNT], p90[STAGE_COUNT];
     PacketCounts counts[STAGE_COUNT];
@@ -165,8 +165,9 @@ static bool measure_scene(Bench *bench, const char *id, StageScene *scene) {
     u32 width = bench->quick ? 320 : 1280, height = bench->quick ? 180 : 720;
     FrameBench run;
     if (!frame_bench_open(&run, bench, scene->level, width, height, 1)) return false;
-    FrameRounds rounds = {5, 25, 90, 0};
-    if (bench->quick) rounds = (FrameRounds){2, 5, 4, 0};
+    if (scene->camera) run.view.camera = scene->camera;
+    FrameRounds rounds = {5, 25, 60, 0};
+    if (bench->quick) rounds = (FrameRounds){2, 5, 2, 0};
     FrameVariant variants[STAGE_COUNT] = {0};
     for (u32 s = 0; s < STAGE_COUNT; s++) {
         variants[s].settings = frame_bench_settings(&run, PATH_TILED_DEFERRED, scene->lights);
@@ -178,8 +179,8 @@ static bool measure_scene(Bench *bench, const char *id, StageScene *scene) {
     for (u32 s = 0; ok && s < STAGE_COUNT; s++) {
         FrameVariant *variant = &variants[s];
         scene->counts[s] = variant->counts;
-        scene->shaded[s] =
-            100.0 * variant->counts.lights_shaded / MAX(variant->counts.lights_total, 1);
+        scene->shaded[s] = 100.0 * variant->counts.lights_shaded /
+                           CLAMP(scene->lights, 1, MAX(variant->counts.lights_total, 1));
         scene->manager_ms[s] = samples_percentile(&variant->lights_ms, 0.5);
         scene->frame_ms[s] = frame_variant_ms(variant);
         scene->p10[s] = samples_percentile(&variant->times.frame_ms, 0.1);
@@ -242,9 +243,12 @@ static bool p3_plot(Bench *bench, const StageScene *scenes, u32 count) {
 }
 
 bool bench_p3(Bench *bench, const char *id) {
-    StageScene scenes[2] = {{.name = "cloister", .level = BENCH_LEVEL, .lights = UINT32_MAX},
-                            {.name = "hall", .level = BENCH_LEVEL_HALL, .lights = 4000}};
-    u32 count = 2;
+    StageScene scenes[3] = {
+        {.name = "cloister", .level = BENCH_LEVEL, .lights = UINT32_MAX},
+        {.name = "cloister, walk", .level = BENCH_LEVEL, .camera = "walk", .lights = UINT32_MAX},
+        {.name = "hall", .level = BENCH_LEVEL_HALL, .lights = 4000},
+    };
+    u32 count = COUNT_OF(scenes);
     if (bench->level) {
         scenes[0] = (StageScene){.name = bench->level, .level = bench->level, .lights = UINT32_MAX};
         count = 1;
