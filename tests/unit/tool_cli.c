@@ -103,3 +103,44 @@ TEST(tool_cli, record_wants_a_length) {
         assert_non_null(strstr(run.output, "from one tick to four hours"));
     }
 }
+
+TEST(tool_cli, mistakes_of_split) {
+    static const struct {
+        const char *arguments, *says;
+    } mistakes[] = {
+        {"--split forward", "needs two values"},
+        {"--split forward foward", "did you mean 'forward'"},
+        {"--split pth=forward deferred", "did you mean 'path'"},
+        {"--split forward deferred,layout=leen", "did you mean 'lean'"},
+        {"--split forward deferred,", "has no value ''"},
+        {"--split forward deferred,scale=0.5", "one size"},
+        {"--split forward deferred --split-at 1.5", "from 0 to 1"},
+        {"--split forward deferred --split-mode lines", "line difference both"},
+        {"--split-mode line -o x.png", "goes with --split"},
+        {"--split forward deferred --frames 0..3 -o x_%d.png", "--split goes with neither"},
+        {"--split forward deferred --stats x.json", "--split goes with neither"},
+    };
+    for (u32 i = 0; i < COUNT_OF(mistakes); i++) {
+        char arguments[512];
+        snprintf(arguments, sizeof arguments, "shot data/levels/light_box.toml %s",
+                 mistakes[i].arguments);
+        Run run = luz("2>&1", arguments);
+        if (run.status != 2 || !strstr(run.output, mistakes[i].says))
+            fail_msg("luz %s: status %d: %s", arguments, run.status, run.output);
+    }
+    Run run = luz("2>&1", "replay none.luzr --split forward deferred");
+    assert_int_equal(run.status, 2);
+    assert_non_null(strstr(run.output, "--split is for frames"));
+}
+
+// Settings come in groups, each once.
+TEST(tool_cli, info_lists_settings_by_group) {
+    Run run = luz("2>&1", "info | sed -n '/settings (/,$p'");
+    const char *at = run.output;
+    static const char *const groups[] = {"\npicture\n", "\nlight manager\n", "\nlight lists\n",
+                                         "\npost chain\n"};
+    for (u32 i = 0; i < COUNT_OF(groups); i++) {
+        at = strstr(at, groups[i]);
+        if (!at) fail_msg("no group '%s' in: %s", groups[i], run.output);
+    }
+}
