@@ -129,19 +129,15 @@ static void show_rects(Renderer *renderer, DebugDraw *draw) {
     for (u32 i = 0; i < count; i++) {
         PacketLightMark mark = mark_get(packet, i);
         if (!is_shown(&mark)) continue;
-        Vec3 p = from_array(mark.position);
-        f32 radius = mark.range;
-        if (is_spot(&mark)) {
-            f32 sine = sqrtf(MAX(1.0f - mark.cos_outer * mark.cos_outer, 0.0f));
-            f32 along = cone_bounding_sphere(mark.range, mark.cos_outer, sine, &radius);
-            p = vec3_add(p, vec3_scale(from_array(mark.direction), along));
+        const f32 *p = mark.position, *w = mark.direction;
+        f32 tip[3], way[3], left, right, bottom, top, near = frame->camera[3];
+        for (u32 a = 0; a < 3; a++) {
+            tip[a] = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
+            way[a] = m[a] * w[0] + m[4 + a] * w[1] + m[8 + a] * w[2];
         }
-        f32 x = m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12];
-        f32 y = m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13];
-        f32 z = m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14];
-        f32 left, right, bottom, top, near = frame->camera[3];
-        if (!sphere_bounds_axis(x, z, radius, near, scale_x, &left, &right) ||
-            !sphere_bounds_axis(y, z, radius, near, scale_y, &bottom, &top))
+        f32 cosine = is_spot(&mark) ? mark.cos_outer : -1.0f;
+        if (!cone_bounds_axis(tip, way, cosine, mark.range, 0, near, scale_x, &left, &right) ||
+            !cone_bounds_axis(tip, way, cosine, mark.range, 1, near, scale_y, &bottom, &top))
             continue;
         shown++;
         debug_frame(draw, (left * 0.5f + 0.5f) * width, (0.5f - top * 0.5f) * height,

@@ -150,6 +150,7 @@ typedef struct Bounds {
     f32 center[3], radius;       // view space: smallest sphere of what is lit
     f32 mesh_along, mesh_radius; // of the drawn volume: a sphere so far from the light
     f32 axis[3], tip[3];
+    f32 reach, cos_half; // of the light itself; a point's cos_half is -1
 } Bounds;
 
 static Bounds light_bounds(const Packet *packet, u32 light, bool is_spot) {
@@ -162,7 +163,8 @@ static Bounds light_bounds(const Packet *packet, u32 light, bool is_spot) {
     for (u32 a = 0; a < 3; a++) d[a] = (f64)p[a] - frame->camera[a];
     for (u32 a = 0; a < 3; a++) b.tip[a] = (f32)(m[a] * d[0] + m[4 + a] * d[1] + m[8 + a] * d[2]);
     f32 reach = SLACK / sqrtf(MAX(p[3], 1e-12f)), along = 0.0f; // where d^2 * w reaches 1
-    b.radius = reach;
+    b.radius = b.reach = reach;
+    b.cos_half = -1.0f;
     b.mesh_radius = 1.2f * reach;
     if (is_spot) {
         const SpotRecord *spot =
@@ -171,6 +173,7 @@ static Bounds light_bounds(const Packet *packet, u32 light, bool is_spot) {
         for (u32 a = 0; a < 3; a++) b.axis[a] = m[a] * w[0] + m[4 + a] * w[1] + m[8 + a] * w[2];
         f32 cosine = CLAMP(w[3] - 1e-4f, -1.0f, 1.0f);
         f32 sine = sqrtf(MAX(1.0f - cosine * cosine, 0.0f));
+        b.cos_half = cosine;
         along = cone_bounding_sphere(reach, cosine, sine, &b.radius);
         // Rings of volume.vert as seen from the middle of the axis, or the box of a whole ball.
         b.mesh_along = cosine > 0.0f ? 0.5f * reach : 0.0f;
@@ -190,10 +193,10 @@ static f32 length3(const f32 *v) { return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2]
 static Rect light_rect(const Packet *packet, const Bounds *b) {
     const FrameRecord *frame = &packet->frame;
     f32 near = frame->camera[3], x0, x1, y0, y1;
-    if (!sphere_bounds_axis(b->center[0], b->center[2], b->radius, near,
-                            1.0f / length3(frame->ray_right), &x0, &x1) ||
-        !sphere_bounds_axis(b->center[1], b->center[2], b->radius, near,
-                            1.0f / length3(frame->ray_up), &y0, &y1))
+    if (!cone_bounds_axis(b->tip, b->axis, b->cos_half, b->reach, 0, near,
+                          1.0f / length3(frame->ray_right), &x0, &x1) ||
+        !cone_bounds_axis(b->tip, b->axis, b->cos_half, b->reach, 1, near,
+                          1.0f / length3(frame->ray_up), &y0, &y1))
         return (Rect){0};
     f32 half_x = 0.5f * (f32)packet->width_px, half_y = 0.5f * (f32)packet->height_px;
     // NDC y points up, rows go down. All pixels that are touched, in part or whole.

@@ -3,6 +3,7 @@
 #include "../test.h"
 #include "../../engine/base/random.h"
 #include "../../engine/base/screen_bounds.h"
+#include "../../engine/base/sphere_bounds.h"
 #include <stdio.h>
 
 #define NEAR_M 0.1
@@ -176,6 +177,35 @@ TEST(base_bounds, cones_contain_their_samples) {
     }
     assert_int_equal(missed_sides, 0);
     assert_true(inside > 500000);
+}
+
+// In NDC, as scissors use them: never wider than the smallest ball around the cone, and clipped.
+TEST(base_bounds, cones_reach_less_far_than_their_balls) {
+    const u64 seed = 0xC0E9;
+    f64 cone_width = 0, ball_width = 0;
+    for (u32 i = 0; i < 20000; i++) {
+        Cone cone = random_cone(seed, i);
+        const f32 tip[3] = {(f32)cone.tip[0], (f32)cone.tip[1], -(f32)cone.tip[2]};
+        const f32 way[3] = {(f32)cone.axis[0], (f32)cone.axis[1], -(f32)cone.axis[2]};
+        f32 reach = (f32)cone.reach, cosine = (f32)cone.cos_half, radius, ends[2][2];
+        f32 along = cone_bounding_sphere(reach, cosine, (f32)cone.sin_half, &radius);
+        bool any =
+            cone_bounds_axis(tip, way, cosine, reach, 0, NEAR_M, 1.3f, &ends[0][0], &ends[0][1]);
+        bool ball = sphere_bounds_axis(tip[0] + way[0] * along, tip[2] + way[2] * along,
+                                       radius * 1.00001f, NEAR_M, 1.3f, &ends[1][0], &ends[1][1]);
+        if (!any) continue;
+        assert_true(ball && ends[0][0] >= -1 && ends[0][1] <= 1);
+        assert_true(ends[0][0] >= ends[1][0] - 1e-5f && ends[0][1] <= ends[1][1] + 1e-5f);
+        cone_width += ends[0][1] - ends[0][0];
+        ball_width += ends[1][1] - ends[1][0];
+        // From 90 degrees on it is the whole ball.
+        bool same =
+            cone_bounds_axis(tip, way, -0.1f, reach, 1, NEAR_M, 1.3f, &ends[0][0], &ends[0][1]) ==
+            sphere_bounds_axis(tip[1], tip[2], reach, NEAR_M, 1.3f, &ends[1][0], &ends[1][1]);
+        assert_true(same && ends[0][0] == ends[1][0] && ends[0][1] == ends[1][1]);
+    }
+    printf("cones are %.2f as wide as their balls\n", cone_width / ball_width);
+    assert_true(cone_width < 0.9 * ball_width);
 }
 
 // The straight sides touch the cone: some generator lies in the plane.
