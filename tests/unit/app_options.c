@@ -66,3 +66,28 @@ TEST(app_options, help_ends_with_0) {
     assert_int_equal(PARSE(&desc, &options, "--help"), 0);
     assert_int_equal(PARSE(&desc, &options, "-h"), 0);
 }
+
+TEST(app_options, split) {
+    AppDesc desc = {0};
+    AppOptions options;
+    assert_int_equal(PARSE(&desc, &options, "--split", "deferred", "layout=packed,shadows=off",
+                           "--set", "scale=0.5", "--set", "exposure=2"),
+                     OPTIONS_GO_ON);
+    assert_ptr_equal(desc.split, &options.split);
+    assert_int_equal(options.settings.path, PATH_DEFERRED);
+    assert_int_equal(options.split.path,
+                     settings_default().path); // what is not named is as in A's base
+    assert_int_equal(options.split.layout, LAYOUT_PACKED);
+    assert_true(options.settings.scale == 0.5f && options.split.scale == 0.5f);
+    assert_true(options.settings.exposure == 2.0f && options.split.exposure == 2.0f);
+    assert_int_equal(options.settings.shadows, 1);
+    assert_int_equal(options.split.shadows, 0);
+    log_set_level(LOG_SEVERITY_NONE);
+    desc = (AppDesc){0};
+    assert_int_equal(PARSE(&desc, &options, "--split", "deferred"), 2);
+    assert_int_equal(PARSE(&desc, &options, "--split"), 2);
+    assert_int_equal(PARSE(&desc, &options, "--split", "deferred", "foward"), 2);
+    assert_int_equal(PARSE(&desc, &options, "--split", "deferred", "forward,scale=0.5"), 2);
+    assert_int_equal(PARSE(&desc, &options, "--split", "target_ms=20", "forward"), 2);
+    log_set_level(LOG_SEVERITY_INFO);
+}

@@ -113,6 +113,25 @@ xdotool key p
 wait_for 10 "the end of the pause" field_is paused false
 xdotool key F2 F2 F2
 
+# --- two ways beside each other ---
+field_is split false || fail "the picture is split at the start"
+xdotool key x
+wait_for 30 "a split picture" field_is split true
+xdotool key bracketleft bracketleft
+wait_for 10 "the line to move left" field_is split_at 0.40
+xdotool key bracketright
+wait_for 10 "the line to move right" field_is split_at 0.45
+xdotool key n
+wait_for 30 "the difference" field_is split_mode 1
+xdotool key n
+wait_for 30 "a band of the difference" field_is split_mode 2
+xdotool key n
+wait_for 30 "the line again" field_is split_mode 0
+tick=$(field tick)
+wait_for 30 "a split picture to go on" ticking "$tick"
+xdotool key x
+wait_for 30 "one picture" field_is split false
+
 # --- files: screenshot, frame, recording ---
 xdotool key F12
 wait_for 20 "a screenshot" test -s "$work/out/screenshot_000.png"
