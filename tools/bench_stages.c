@@ -54,16 +54,16 @@ bool bench_measure_manager(Bench *bench, const char *id, ManagerCost *cost) {
     static const char *const part_names[PART_COUNT] = {"lights", "lists", "packet",
                                                        "decision, one in six ticks"};
     ManagerRun runs[] = {
-        {.name = " 1,000", .lights = 1000, .manager = true, .grid = GRID_RECT},
-        {.name = " 1,000, manager off", .lights = 1000, .grid = GRID_RECT},
-        {.name = " 1,000, off, frustum", .lights = 1000, .grid = GRID_FRUSTUM},
-        {.name = "10,000", .lights = 10000, .manager = true, .grid = GRID_RECT},
+        {.name = "1,000 lights", .lights = 1000, .manager = true, .grid = GRID_RECT},
+        {.name = "1,000, manager off", .lights = 1000, .grid = GRID_RECT},
+        {.name = "1,000, off, frustum", .lights = 1000, .grid = GRID_FRUSTUM},
+        {.name = "10,000 lights", .lights = 10000, .manager = true, .grid = GRID_RECT},
         {.name = "10,000, manager off", .lights = 10000, .grid = GRID_RECT},
         {.name = "10,000, off, frustum", .lights = 10000, .grid = GRID_FRUSTUM},
     };
     Session session;
     if (!session_create(&session, tool_session())) return false;
-    bool ok = headless_load(&session, bench_level(bench, BENCH_LEVEL_HALL), &bench->common);
+    bool ok = headless_load(&session, BENCH_LEVEL_HALL, &bench->common);
     jobs_stop();
     jobs_start(1);
     u32 blocks = bench->quick ? 2 : 5, frames = bench->quick ? 5 : 40;
