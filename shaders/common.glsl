@@ -63,6 +63,13 @@ vec4 palette_extra(uint material) {
     return PALETTE_TEXTURE != 0u ? palette_texel(material, 4) : materials[material].extra;
 }
 
+// Debug pictures: blue, cyan, green, yellow, red for 0..1, then to white at 2. The legends have the
+// same colours (heat_color of render/debug_views.c).
+vec3 heat_map(float x) {
+    vec3 color = clamp(vec3(4.0 * x - 1.5, 2.0 - abs(4.0 * x - 2.0), 1.5 - 4.0 * x), 0.0, 1.0);
+    return mix(color, vec3(1.0), clamp(x - 1.0, 0.0, 1.0)) * 0.9 + 0.1;
+}
+
 // World position of a pixel from its depth, see FrameRecord.
 vec3 position_from_depth(vec2 pixel_center, float depth) {
     vec2 ndc = vec2(pixel_center.x * frame.viewport.z * 2.0 - 1.0,

@@ -7,13 +7,6 @@
 
 layout(location = 0) out vec4 out_color;
 
-// Blue, cyan, green, yellow, red, white for 0..1.
-vec3 heat(float x) {
-    return clamp(vec3(3.0 * x - 1.2, 2.2 - abs(3.2 * x - 1.6), 1.4 - 4.0 * abs(x - 0.2)) +
-                     vec3(max(x - 0.85, 0.0) * 6.0),
-                 0.0, 1.0);
-}
-
 vec3 specular_of(GbufferPixel g) {
     return LAYOUT < GBUFFER_LAYOUT_HALF5 ? palette_specular(g.material).rgb : g.specular.rgb;
 }
@@ -82,7 +75,7 @@ vec3 hashed(uint key) {
 // Lights of the pixel's tile or cluster, as it is shaded.
 vec3 view_cell_lights(uint cell) {
     uvec4 list = cell_list(cell);
-    return list.y + list.z == 0u ? vec3(0.0) : heat(log2(float(list.y + list.z)) / 8.0);
+    return list.y + list.z == 0u ? vec3(0.0) : heat_map(log2(float(list.y + list.z)) / 8.0);
 }
 // A tile's nearest depth upper left of the diagonal, its farthest lower right, and along the lower
 // rim which of the 32 slices between them are occupied.

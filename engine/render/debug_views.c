@@ -254,47 +254,41 @@ static void show_occluders(Renderer *renderer, DebugDraw *draw) {
     legend_row(&legend, depth_color(1.0f), "1 m");
     legend_row(&legend, depth_color(10.0f), "10 m");
     legend_row(&legend, depth_color(100.0f), "100 m");
-    legend_row(&legend, WHITE, "%u occluders, %u x %u; %u lights and %u drawables behind",
-               packet->counts.occluders, columns, rows, packet->counts.lights_occluded,
+    legend_row(&legend, WHITE, "%u occluders, %u x %u", packet->counts.occluders, columns, rows);
+    legend_row(&legend, WHITE, "%u lights, %u drawables behind", packet->counts.lights_occluded,
                packet->counts.drawables_occluded);
 }
 
-// The colours of overdraw_show.frag.
-static u32 overdraw_color(f32 count) {
-    f32 x = (count - 1.0f) / 8.0f, white = CLAMP((x - 1.0f) * 8.0f / 7.0f, 0.0f, 1.0f);
+// heat_map() of common.glsl.
+static u32 heat_color(f32 x) {
     f32 rgb[3] = {4.0f * x - 1.5f, 2.0f - fabsf(4.0f * x - 2.0f), 1.5f - 4.0f * x};
+    f32 white = CLAMP(x - 1.0f, 0.0f, 1.0f);
     for (u32 i = 0; i < 3; i++) {
         rgb[i] = CLAMP(rgb[i], 0.0f, 1.0f);
-        rgb[i] = (rgb[i] + (1.0f - rgb[i]) * white) * 0.9f + 0.1f;
+        rgb[i] = ((rgb[i] + (1.0f - rgb[i]) * white) * 0.9f + 0.1f) * 255.0f;
     }
-    return RGB(rgb[0] * 255.0f, rgb[1] * 255.0f, rgb[2] * 255.0f);
+    return RGB(rgb[0], rgb[1], rgb[2]);
 }
 
 static void show_overdraw(Renderer *renderer, DebugDraw *draw) {
-    static const u32 steps[] = {1, 2, 3, 5, 7, 9, 16};
+    static const u32 steps[] = {1, 2, 3, 5, 7, 9, 17};
     Legend legend = legend_begin(renderer, draw,
                                  draw->packet->settings.view == VIEW_LAYERS
                                      ? "surfaces of a pixel, hidden ones too"
                                      : "times that a pixel is drawn, near to far, depth test on");
     for (u32 i = 0; i < COUNT_OF(steps); i++)
-        legend_row(&legend, overdraw_color((f32)steps[i]), "%u%s", steps[i],
+        legend_row(&legend, heat_color(((f32)steps[i] - 1.0f) / 8.0f), "%u%s", steps[i],
                    i + 1 == COUNT_OF(steps) ? " and more" : "");
 }
 
-// The colours of debug.frag's heat map: lights of a list.
 static void show_cell_lights(Renderer *renderer, DebugDraw *draw) {
     static const u32 steps[] = {1, 4, 16, 64, 256};
     Legend legend = legend_begin(renderer, draw,
                                  settings_clustered(&draw->packet->settings)
                                      ? "lights in the cluster of each pixel"
                                      : "lights in the list of each tile");
-    for (u32 i = 0; i < COUNT_OF(steps); i++) {
-        f32 x = (f32)i * 0.25f, white = MAX(x - 0.85f, 0.0f) * 6.0f;
-        f32 rgb[3] = {3.0f * x - 1.2f + white, 2.2f - fabsf(3.2f * x - 1.6f) + white,
-                      1.4f - 4.0f * fabsf(x - 0.2f) + white};
-        for (u32 k = 0; k < 3; k++) rgb[k] = CLAMP(rgb[k], 0.0f, 1.0f) * 255.0f;
-        legend_row(&legend, RGB(rgb[0], rgb[1], rgb[2]), "%u", steps[i]);
-    }
+    for (u32 i = 0; i < COUNT_OF(steps); i++)
+        legend_row(&legend, heat_color((f32)i * 0.25f), "%u", steps[i]); // log2 / 8
     const PacketCounts *counts = &draw->packet->counts;
     if (counts->cell_count)
         legend_row(&legend, WHITE, "%u cells, %u in the fullest", counts->cell_count,
