@@ -11,6 +11,7 @@
 // px.
 #ifndef LUZ_LIGHT_DECIDE_H
 #define LUZ_LIGHT_DECIDE_H
+#include "light_surfaces.h"
 #include "occlusion.h"
 
 #define REFERENCE_HEIGHT_PX 720
@@ -44,6 +45,7 @@ typedef struct LightScene {
     u32 attenuation; // Attenuation
     f32 falloff[3];  // polynomial: kc, kl, kq
     LightManagerConfig config;
+    const LightSurfaces *surfaces; // NULL = not known
 } LightScene;
 
 // ---- light_scene.c ----
@@ -83,6 +85,9 @@ MergedLight light_merge_pair(const LightTable *light, const LightCandidates *can
 // Predicted error of showing the merged light instead of the pair: how much the reference picture
 // changes in the worst region, as the mean over its pixels, 1 = white. See light_merge.c.
 f32 light_merge_error(const LightScene *scene, u32 a, u32 b);
+// Largest change of a single pixel by merging the pair, predicted from how far the nearest surface
+// is, 1 = white.
+f32 light_merge_peak(const LightScene *scene, u32 a, u32 b);
 // May these two become one (held: stay one, with slack against flicker)? *error: predicted.
 bool light_may_merge(const LightScene *scene, u32 a, u32 b, bool held, f32 *error);
 // Fills partner and pair_error. held[count]: the partner of pairs that are merged or were: those

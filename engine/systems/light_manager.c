@@ -14,23 +14,27 @@ LightManagerState *light_manager_create(void) {
     LightManagerState *state = calloc(1, sizeof *state);
     LUZ_ASSERT(state);
     LUZ_ASSERT(arena_create(&state->polygon_arena, "occluder polygons", GIB(1)));
+    LUZ_ASSERT(arena_create(&state->surface_arena, "light surfaces", GIB(1)));
     return state;
 }
 
 void light_manager_destroy(LightManagerState *state) {
     if (!state) return;
     arena_destroy(&state->polygon_arena);
+    arena_destroy(&state->surface_arena);
     free(state->slots);
     free(state);
 }
 
 LightManagerState *light_manager_clone(const LightManagerState *state) {
     LightManagerState *clone = light_manager_create();
-    Arena arena = clone->polygon_arena;
+    Arena polygon_arena = clone->polygon_arena, surface_arena = clone->surface_arena;
     *clone = *state;
-    clone->polygon_arena = arena;
+    clone->polygon_arena = polygon_arena;
+    clone->surface_arena = surface_arena;
     clone->polygons = NULL; // a step makes them again
-    clone->polygons_stamp = 0;
+    clone->surfaces = NULL;
+    clone->polygons_stamp = clone->surfaces_stamp = 0;
     clone->slots = malloc(MAX(state->slot_count, 1) * sizeof *state->slots);
     LUZ_ASSERT(clone->slots);
     if (state->slot_count)
@@ -128,6 +132,15 @@ static void refresh_polygons(LightManagerState *state, const World *world, const
     state->polygons_stamp = stamp;
 }
 
+// Once a level: what stands still does so.
+static void refresh_surfaces(LightManagerState *state, const World *world,
+                             const AssetStore *assets) {
+    if (state->surfaces_stamp == assets->stamp && state->surfaces) return;
+    arena_reset(&state->surface_arena);
+    state->surfaces = light_surfaces_build(world, assets, &state->surface_arena);
+    state->surfaces_stamp = assets->stamp;
+}
+
 // Rows that the reference view shows, ascending.
 static u32 *visible_rows(const LightManagerState *state, const World *world,
                          const AssetStore *assets, const LightScene *scene, u32 *count,
@@ -147,6 +160,7 @@ static void step(LightManagerState *state, const World *world, const AssetStore 
     u64 mark = arena_mark(scratch);
     grow_slots(state, world->entity_slots);
     refresh_polygons(state, world, assets, scratch);
+    refresh_surfaces(state, world, assets);
     u32 *held = NULL;
     if (!at_once) {
         held = ARENA_PUSH(scratch, u32, light->table.count);
@@ -154,6 +168,7 @@ static void step(LightManagerState *state, const World *world, const AssetStore 
     }
     LightCandidates candidates = light_candidates(light, 1.0f, scratch);
     LightScene scene = light_scene_make(world, camera, &candidates);
+    scene.surfaces = state->surfaces;
     LightDecideDesc desc = {
         .held = held, .merge = true, .drop = true, .budget = scene.config.budget};
     desc.rows = visible_rows(state, world, assets, &scene, &desc.row_count, scratch);

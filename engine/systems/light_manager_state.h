@@ -23,6 +23,9 @@ struct LightManagerState {
     Arena polygon_arena;
     OccluderPolygons *polygons; // of meshes that occlude
     u64 polygons_stamp;
+    Arena surface_arena;
+    LightSurfaces *surfaces; // as of the last cut to another level
+    u64 surfaces_stamp;
 };
 
 // NULL if the state does not know this entity.

@@ -21,6 +21,10 @@
 #define HELD_ERROR    1.5f
 #define HELD_DISTANCE 0.9f
 #define HELD_RANGE    1.2f
+#define HELD_PEAK     4.0f
+// Largest predicted change of one pixel: a blend of 15 ticks must not show in any of them.
+#define PEAK_MAX           0.08f
+#define PEAK_SURFACE_MIN_M 0.1f
 // Where no surface is known, one is taken to pass a light at this part of its range, but not
 // nearer.
 #define SURFACE_PART  0.25f
@@ -154,6 +158,26 @@ f32 light_merge_error(const LightScene *scene, u32 a, u32 b) {
     return change * scene->white * scale * scale / (f32)(REGION_PX * REGION_PX);
 }
 
+// At height h over a plane |E'| is at most 0.859 I / h^3, and |E| at most I / h^2.
+f32 light_merge_peak(const LightScene *scene, u32 a, u32 b) {
+    const LightTable *light = scene->light;
+    const LightCandidates *c = &scene->candidates;
+    MergedLight merged = light_merge_pair(light, c, a, b);
+    if (c->radius[a] < 0.0f || c->radius[b] < 0.0f) return 0.0f;
+    f32 guess = MAX(SURFACE_PART * MIN(light->reach[a], light->reach[b]), SURFACE_MIN_M);
+    f32 around = light_surface_distance(scene->surfaces, merged.position, guess), sum = 0.0f;
+    u32 rows[2] = {a, b};
+    for (u32 i = 0; i < 2; i++) {
+        Vec3 place = row_position(light, rows[i]);
+        f32 h = MIN(light_surface_distance(scene->surfaces, place, guess), around);
+        h = MAX(h, PEAK_SURFACE_MIN_M);
+        f32 step = vec3_length(vec3_sub(merged.position, place));
+        f32 brightest = MAX(MAX(fabsf(c->r[rows[i]]), fabsf(c->g[rows[i]])), fabsf(c->b[rows[i]]));
+        sum = MAX(sum, brightest * MIN(0.859f * step / h, 1.0f) / (h * h));
+    }
+    return sum * scene->white;
+}
+
 bool light_may_merge(const LightScene *scene, u32 a, u32 b, bool held, f32 *error) {
     const LightTable *light = scene->light;
     *error = 0.0f;
@@ -180,6 +204,9 @@ bool light_may_merge(const LightScene *scene, u32 a, u32 b, bool held, f32 *erro
             fabsf(light->inner_angle[a] - light->inner_angle[b]) > SPOT_INNER_DEG * slack)
             return false;
     }
+    if (scene->attenuation == ATTENUATION_INVERSE_SQUARE &&
+        light_merge_peak(scene, a, b) > PEAK_MAX * (held ? HELD_PEAK : 1.0f))
+        return false;
     *error = light_merge_error(scene, a, b);
     return *error <= scene->config.merge_error * (held ? HELD_ERROR : 1.0f);
 }

@@ -16,6 +16,12 @@ static LightManagerTable *manager_columns(SystemsFixture *f) {
     return FIXTURE_TABLE(f, LightManager, light_manager);
 }
 
+// A dim picture: surfaces that are close spoil fewer pairs.
+static void set_exposure(SystemsFixture *f, f32 exposure) {
+    world_singleton(f->world, COMPONENT_environment);
+    FIXTURE_TABLE(f, Environment, environment)->exposure[0] = exposure;
+}
+
 // Lights in a slab before the camera, some of them in tight groups. The camera looks from the
 // origin to -z.
 static void spawn_lights(SystemsFixture *f, u64 seed, u32 count, f32 extent) {
@@ -110,6 +116,7 @@ TEST(systems_light_manager, merging_keeps_energy_and_covers_both) {
     const u64 seed = 0x3E7;
     SystemsFixture *f = systems_fixture_create(5);
     spawn_lights(f, seed, 900, 20.0f);
+    set_exposure(f, 0.02f);
     manager_columns(f)->merge_error[0] = 1.0f;
     manager_columns(f)->merge_distance[0] = 0.0f;
     LightScene s = scene_of(f);
@@ -371,7 +378,8 @@ TEST(systems_light_manager, counters_add_up_and_marks_say_the_same) {
     }
     systems_settle(&f->systems, &f->context);
     LightManagerTable *m = manager_columns(f);
-    m->merge_distance[0] = 5, m->merge_error[0] = 0.5f, m->drop_contribution[0] = 0.3f;
+    m->merge_distance[0] = 5, m->merge_error[0] = 0.1f, m->drop_contribution[0] = 0.03f;
+    set_exposure(f, 0.1f);
     for (u32 v = 0; v < COUNT_OF(variants); v++) {
         const Packet *p = packet_with(f, variants[v], 2);
         const PacketCounts *c = &p->counts;
@@ -430,6 +438,7 @@ TEST(systems_light_manager, counters_add_up_and_marks_say_the_same) {
 TEST(systems_light_manager, records_keep_a_stable_order) {
     SystemsFixture *f = systems_fixture_create(5);
     spawn_lights(f, 0x3EB, 1200, 40.0f);
+    set_exposure(f, 0.1f);
     manager_columns(f)->merge_distance[0] = 5;
     manager_columns(f)->merge_error[0] = 0.05f;
     const Packet *p = packet_with(f, NULL, 0);
@@ -529,5 +538,75 @@ TEST(systems_light_manager, nothing_and_nonsense) {
     light->reach[9] = 0, light->priority[11] = -1, light->outer_angle[13] = 0;
     RenderSettings settings = settings_default();
     fixture_packet(f, ENTITY_NONE, settings, 640, 360, 0); // must not crash or hang
+    systems_fixture_destroy(f);
+}
+
+// ---- surfaces ----
+
+TEST(systems_light_manager, surfaces_are_about_as_far_as_they_are) {
+    const u64 seed = 0x3ED;
+    AssetStore store;
+    assert_true(asset_store_create(&store));
+    u32 model = asset_generate_model(&store, &(ShapeDesc){.shape = SHAPE_CUBE});
+    u32 mesh = store.models[model].parts[0].mesh;
+    SystemsFixture *f = systems_fixture_create(5);
+    f->context.assets = &store;
+    for (u32 i = 0; i < 2; i++)
+        fixture_spawn_light(f, LIGHT_POINT,
+                            vec3(i ? 4.0f : -4.0f, i ? 2.0f : -2.0f, i ? 3.0f : -3.0f), 2);
+    fixture_spawn_mesh(f, mesh, vec3(0, -1, 0), vec3(6, 1, 4), 0, COLLISION_NONE);
+    Entity flying = fixture_spawn_mesh(f, mesh, vec3(0, 2, 0), vec3(1, 1, 1), 0, COLLISION_NONE);
+    FIXTURE_ADD(f, orbit, flying); // moves: not counted
+    systems_settle(&f->systems, &f->context);
+    LightSurfaces *s = light_surfaces_build(f->world, &store, &f->arenas.level);
+    assert_true((u64)s->nx * s->ny * s->nz <= LIGHT_SURFACES_CELLS);
+    f64 cap = LIGHT_SURFACES_CAP * (f64)s->cell_m / 3;
+    for (u32 i = 0; i < 4000; i++) {
+        Vec3 p = {random_range(seed, 1, i, -7, 7), random_range(seed, 2, i, -5, 5),
+                  random_range(seed, 3, i, -6, 6)};
+        f64 out[3] = {fabs((f64)p.x) - 3, fabs((f64)p.y + 1) - 0.5, fabs((f64)p.z) - 2}, to = 0;
+        f64 inside = MAX(MAX(out[0], out[1]), out[2]);
+        for (u32 k = 0; k < 3; k++) to += MAX(out[k], 0) * MAX(out[k], 0);
+        to = inside > 0 ? sqrt(to) : -inside;
+        f64 got = light_surface_distance(s, p, 99);
+        // A chamfer distance is off by a tenth, a cell has a diagonal.
+        if (got < cap - 1e-3)
+            ASSERT_NEAR(got, to, 0.12 * to + 1.9 * (f64)s->cell_m);
+        else
+            assert_true(to > cap * 0.85);
+    }
+    assert_true(light_surface_distance(s, vec3(100, 0, 0), 99) == 99);
+    assert_true(light_surface_distance(NULL, vec3(0, 0, 0), 7) == 7);
+    systems_fixture_destroy(f);
+    asset_store_destroy(&store);
+}
+
+// Two lights that would be merged in the open are not where a wall passes close by.
+TEST(systems_light_manager, close_surfaces_keep_pairs_apart) {
+    SystemsFixture *f = systems_fixture_create(5);
+    for (u32 k = 0; k < 2; k++) fixture_spawn_light(f, LIGHT_POINT, vec3((f32)k * 0.3f, 0, -30), 4);
+    systems_settle(&f->systems, &f->context);
+    manager_columns(f)->merge_error[0] = 1;
+    LightScene scene = scene_of(f);
+    f32 error;
+    assert_true(light_may_merge(&scene, 0, 1, false, &error));
+    u8 distance = 0;
+    LightSurfaces wall = {
+        .origin = {-50, -50, -80}, .cell_m = 100, .nx = 1, .ny = 1, .nz = 1, .distance = &distance};
+    scene.surfaces = &wall;
+    assert_false(light_may_merge(&scene, 0, 1, false, &error));
+    // Numerically: the largest change on a plane at the height that the grid says.
+    f64 h = 0.6, worst = 0;
+    distance = 3, wall.cell_m = (f32)h, wall.origin = vec3(-0.1f, -0.1f, -30.1f);
+    MergedLight m = light_merge_pair(scene.light, &scene.candidates, 0, 1);
+    for (f64 x = -3; x < 3; x += 0.005) {
+        f64 sum = 0, at[3] = {0, (f64)0.3f, (f64)m.position.x};
+        for (u32 k = 0; k < 3; k++)
+            sum += (k < 2 ? 1 : -2) * h / pow(h * h + (x - at[k]) * (x - at[k]), 1.5);
+        worst = MAX(worst, fabs(sum));
+    }
+    f64 peak = (f64)light_merge_peak(&scene, 0, 1), real = worst * (f64)scene.white;
+    printf("    peak predicted %.4f, real %.4f\n", peak, real);
+    assert_true(peak >= real && peak < 4 * real);
     systems_fixture_destroy(f);
 }

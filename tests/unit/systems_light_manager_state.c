@@ -167,6 +167,8 @@ TEST(systems_light_manager_state, settles_to_what_is_decided_afresh) {
                              f->world->tables[COMPONENT_pulse]};
     for (u32 i = 0; i < COUNT_OF(moving); i++) // a world that stands still
         while (moving[i]->count) table_remove(moving[i], moving[i]->entity[0]);
+    world_singleton(f->world, COMPONENT_environment);
+    FIXTURE_TABLE(f, Environment, environment)->exposure[0] = 0.1f;
     manager_columns(f)->budget[0] = 5;
     LightManagerState *slow = light_manager_create(), *fresh = light_manager_create();
     manager_columns(f)->merge_distance[0] = 1e5f;
