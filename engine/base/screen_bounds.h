@@ -39,7 +39,7 @@ bool ball_outline_range(const BallOutline *outline, f64 y_from, f64 y_to, RatioR
 // --- Cone: the part of a ball around its tip that is within an angle of its axis ---
 
 typedef struct Cone {
-    f64 tip[3], axis[3]; // x, y, depth; axis unit
+    f64 tip[3], axis[3];           // x, y, depth; axis unit
     f64 cos_half, sin_half, reach; // half angle under 90 degrees (beyond: not convex, use the ball)
 } Cone;
 // How far it reaches from its tip in a unit direction, 0..reach.
@@ -48,9 +48,13 @@ f64 cone_extent(const Cone *cone, const f64 direction[3]);
 typedef struct ConeAxis {
     f64 tip, tip_depth, axis, axis_depth, cos_half, reach;
     f64 rim, rim_depth, rim_rise, rim_along, rim_across; // the rim's circle
-    struct { f64 depth, ratio; } points[5]; // where its outline may turn: tip, tangents
+    struct {
+        f64 depth, ratio;
+    } points[5]; // where its outline may turn: tip, tangents
     u32 point_count, side_count;
-    struct { f64 along, depth; } sides[2]; // unit generators that touch planes through the eye's axis
+    struct {
+        f64 along, depth;
+    } sides[2]; // unit generators that touch planes through the eye's axis
 } ConeAxis;
 ConeAxis cone_axis(const Cone *cone, u32 axis); // 0 = x, 1 = y
 // Exact range at one depth > 0, and of the part between two. False if there is none.
