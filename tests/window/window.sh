@@ -71,7 +71,8 @@ turned() {
 wait_for 30 "a turn by the mouse" turned
 
 # --- paths ---
-for choice in 1:forward 2:deferred 3:tiled_deferred; do
+for choice in 1:forward 2:multipass 3:deferred 4:deferred_volumes 5:tiled_deferred \
+    6:tiled_forward 7:clustered_deferred 8:clustered_forward; do
     xdotool key "${choice%%:*}"
     wait_for 30 "path ${choice#*:}" field_is path "${choice#*:}"
 done
@@ -129,6 +130,13 @@ xdotool key n
 wait_for 30 "the line again" field_is split_mode 0
 tick=$(field tick)
 wait_for 30 "a split picture to go on" ticking "$tick"
+xdotool key F1 # frees the pointer
+wait_for 10 "the panel" field_is panel true
+xdotool mousemove --window "$window" 288 300 sleep 0.3 mousedown 1 sleep 0.3 \
+    mousemove --window "$window" 160 300 sleep 0.3 mouseup 1
+wait_for 10 "the mouse to drag the line" field_is split_at 0.25
+xdotool key F1
+wait_for 10 "the panel to close" field_is panel false
 xdotool key x
 wait_for 30 "one picture" field_is split false
 
