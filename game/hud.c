@@ -37,7 +37,7 @@ u32 hud_lines(const LuzHud *hud, PacketText2D *out, u32 cap, void *user) {
                                       "W A S D and the mouse to walk, shift to run"};
         out[count++] =
             (PacketText2D){MARGIN_PX, y + LINE_PX, TEXT_SIZE_PX, color,
-                           "1 2 3 to light in another way, T for a tour, H for all keys"};
+                           "1 to 8 to light in another way, T for a tour, H for all keys"};
     }
     char path[32];
     settings_word("path", hud->settings->path, path, sizeof path);

@@ -45,7 +45,8 @@ bool app_create(App *app, const AppDesc *desc) {
     app->split = desc->split != NULL;
     app->split_view.at = 0.5f;
     app->other_settings = app->split ? *desc->split : app->settings;
-    if (!app->split) app->other_settings.path = PATH_FORWARD;
+    // Something else to see, and fast enough for every level on every device.
+    if (!app->split) app->other_settings.path = PATH_TILED_FORWARD;
     app->has_shader_directory = directory_exists(SHADER_DIRECTORY);
     jobs_start(desc->threads);
     SessionDesc session = {.components = desc->components,
