@@ -3,7 +3,7 @@
 // stands for a pair, its predicted error. Called by: light_rank.c (the decision), packet_lights.c
 // (the merged light). Does not: merge more than two, or know time (light_manager.c blends).
 //
-// Pairs are found by spatial hash grids, one for each octave of range, whose cells are twice as
+// Pairs are found by spatial hash grids, one for each octave of range, whose cells are as
 // wide as what two lights of that range may be apart; each light, in row order, takes the free
 // light after it that gives the least error. Linear in the number of lights as long as they do not
 // crowd.
@@ -220,10 +220,10 @@ static i32 range_octave(f32 range) {
     return (i32)(bits >> 23) - 127;
 }
 
-// Cells of an octave are 2^(n+1) m wide: two lights, the smaller of which is of it, are at most
-// half a cell apart, so the eight cells around a point hold all partners.
+// Cells of an octave are 2^n m wide: two lights, the smaller of which is of it, are at most a cell
+// apart, so the 27 cells around a point hold all partners.
 static f32 octave_cells_per_m(i32 octave) {
-    u32 bits = (u32)CLAMP(126 - octave, 1, 254) << 23;
+    u32 bits = (u32)CLAMP(127 - octave, 1, 254) << 23;
     f32 scale;
     memcpy(&scale, &bits, sizeof scale);
     return scale;
@@ -237,10 +237,18 @@ static u32 cell_hash(i32 x, i32 y, i32 z, i32 octave) {
     return h ^ h >> 13;
 }
 
+// What a first look at a pair needs.
+typedef struct GridLight {
+    Vec3 at;
+    f32 energy;
+    f32 peak, peak_per_m; // light_merge_peak is at least MIN(peak, peak_per_m * step); 0 = any step
+} GridLight;
+
 typedef struct MergeGrid {
-    u32 mask;   // buckets - 1
-    u32 *first; // [buckets + 1] into `rows`
-    u32 *rows;  // [count] ascending within a bucket
+    u32 mask;          // buckets - 1
+    u32 *first;        // [buckets + 1] into `rows`
+    u32 *rows;         // [count] ascending within a bucket
+    GridLight *lights; // [count] the same ones
 } MergeGrid;
 
 static u32 bucket_of(const LightTable *light, u32 row, u32 mask) {
@@ -251,11 +259,26 @@ static u32 bucket_of(const LightTable *light, u32 row, u32 mask) {
            mask;
 }
 
-static MergeGrid grid_build(const LightTable *light, const u32 *rows, u32 count, Arena *scratch) {
+static GridLight grid_light(const LightScene *scene, u32 row) {
+    const LightCandidates *c = &scene->candidates;
+    GridLight light = {.at = row_position(scene->light, row), .energy = row_energy(c, row)};
+    if (scene->attenuation != ATTENUATION_INVERSE_SQUARE) return light;
+    // The larger of two guesses: a lower bound, whoever the partner is.
+    f32 guess = MAX(SURFACE_PART * scene->light->reach[row], SURFACE_MIN_M);
+    f32 h = MAX(light_surface_distance(scene->surfaces, light.at, guess), PEAK_SURFACE_MIN_M);
+    f32 brightest = MAX(MAX(fabsf(c->r[row]), fabsf(c->g[row])), fabsf(c->b[row]));
+    light.peak = brightest * scene->white / (h * h);
+    light.peak_per_m = light.peak * 0.859f / h;
+    return light;
+}
+
+static MergeGrid grid_build(const LightScene *scene, const u32 *rows, u32 count, Arena *scratch) {
+    const LightTable *light = scene->light;
     MergeGrid grid = {.mask = 63};
     while (grid.mask < 2 * count) grid.mask = grid.mask * 2 + 1;
     grid.first = ARENA_PUSH(scratch, u32, grid.mask + 2);
     grid.rows = ARENA_PUSH(scratch, u32, count);
+    grid.lights = ARENA_PUSH(scratch, GridLight, count);
     u32 *bucket = ARENA_PUSH(scratch, u32, count);
     for (u32 i = 0; i < count; i++) {
         bucket[i] = bucket_of(light, rows[i], grid.mask);
@@ -266,37 +289,54 @@ static MergeGrid grid_build(const LightTable *light, const u32 *rows, u32 count,
     for (u32 i = count; i-- > 0;) grid.rows[--grid.first[bucket[i] + 1]] = rows[i];
     for (u32 i = 0; i <= grid.mask; i++) grid.first[i] = grid.first[i + 1];
     grid.first[grid.mask + 1] = count;
+    for (u32 i = 0; i < count; i++) grid.lights[i] = grid_light(scene, grid.rows[i]);
     return grid;
 }
 
-// The free light after `row` that gives the least error; of equal ones the first.
-static u32 best_partner(const LightScene *scene, const MergeGrid *grid, u32 row, const u32 *partner,
-                        f32 *best_error) {
-    const LightTable *light = scene->light;
-    i32 own = range_octave(light->reach[row]);
-    u32 best = ROW_NONE;
-    *best_error = INFINITY;
-    f32 x = light->x[row], y = light->y[row], z = light->z[row];
-    f32 reach = SEPARATION_MAX * light->reach[row], reach2 = reach * reach;
+typedef struct Partner {
+    u32 row;
+    f32 error;
+} Partner;
+
+// Would one of the two change a pixel too much, by itself? Spares the full judgement.
+static bool peaks(const GridLight *a, const GridLight *b, f32 distance2) {
+    f32 distance = sqrtf(distance2), energy = a->energy + b->energy;
+    f32 step_a = distance * b->energy / energy, step_b = distance - step_a;
+    // A part of a thousand for rounding: what is judged in full decides.
+    return MIN(a->peak, a->peak_per_m * step_a) > PEAK_MAX * 1.001f ||
+           MIN(b->peak, b->peak_per_m * step_b) > PEAK_MAX * 1.001f;
+}
+
+// The best of a bucket's lights after `row`, if better than what there is; of equal ones the first.
+static void search_bucket(const LightScene *scene, const MergeGrid *grid, u32 bucket, u32 row,
+                          const GridLight *own, const u32 *partner, Partner *best) {
+    f32 reach = SEPARATION_MAX * scene->light->reach[row], reach2 = reach * reach;
+    for (u32 i = grid->first[bucket + 1]; i-- > grid->first[bucket];) {
+        u32 other = grid->rows[i];
+        if (other <= row) break; // so are all before it
+        Vec3 apart = vec3_sub(grid->lights[i].at, own->at);
+        f32 distance2 = vec3_dot(apart, apart), error;
+        if (distance2 > reach2 || partner[other] != ROW_NONE ||
+            peaks(own, &grid->lights[i], distance2) ||
+            !light_may_merge(scene, row, other, false, &error))
+            continue;
+        if (error < best->error || (error == best->error && other < best->row))
+            *best = (Partner){other, error};
+    }
+}
+
+static Partner best_partner(const LightScene *scene, const MergeGrid *grid, u32 row,
+                            const u32 *partner) {
+    Partner best = {ROW_NONE, INFINITY};
+    GridLight light = grid_light(scene, row);
+    Vec3 at = light.at;
+    i32 own = range_octave(scene->light->reach[row]);
     for (i32 octave = own - 1; octave <= own + 1; octave++) {
         f32 k = octave_cells_per_m(octave);
-        i32 cx = (i32)floorf(x * k - 0.5f), cy = (i32)floorf(y * k - 0.5f),
-            cz = (i32)floorf(z * k - 0.5f);
-        for (u32 corner = 0; corner < 8; corner++) {
-            u32 bucket = cell_hash(cx + (i32)(corner & 1), cy + (i32)(corner >> 1 & 1),
-                                   cz + (i32)(corner >> 2), octave) &
-                         grid->mask;
-            for (u32 i = grid->first[bucket]; i < grid->first[bucket + 1]; i++) {
-                u32 other = grid->rows[i];
-                f32 dx = light->x[other] - x, dy = light->y[other] - y, dz = light->z[other] - z;
-                if (other <= row || partner[other] != ROW_NONE ||
-                    dx * dx + dy * dy + dz * dz > reach2)
-                    continue;
-                f32 error;
-                if (!light_may_merge(scene, row, other, false, &error)) continue;
-                if (error < *best_error || (error == *best_error && other < best))
-                    best = other, *best_error = error;
-            }
+        i32 x = (i32)floorf(at.x * k), y = (i32)floorf(at.y * k), z = (i32)floorf(at.z * k);
+        for (i32 n = 0; n < 27; n++) {
+            u32 bucket = cell_hash(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1, octave);
+            search_bucket(scene, grid, bucket & grid->mask, row, &light, partner, &best);
         }
     }
     return best;
@@ -327,13 +367,12 @@ void light_merge_find(const LightScene *scene, const u32 *held, const u32 *rows,
             vec3_dot(to, to) >= nearest2)
             free_rows[free_count++] = row;
     }
-    MergeGrid grid = grid_build(light, free_rows, free_count, scratch);
+    MergeGrid grid = grid_build(scene, free_rows, free_count, scratch);
     for (u32 i = 0; i < free_count; i++) {
         u32 row = free_rows[i];
         if (decision->partner[row] != ROW_NONE) continue;
-        f32 error;
-        u32 other = best_partner(scene, &grid, row, decision->partner, &error);
-        if (other != ROW_NONE) set_pair(decision, row, other, error, 1.0f);
+        Partner best = best_partner(scene, &grid, row, decision->partner);
+        if (best.row != ROW_NONE) set_pair(decision, row, best.row, best.error, 1.0f);
     }
     arena_rewind(scratch, mark);
 }

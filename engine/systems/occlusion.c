@@ -373,6 +373,13 @@ bool occlusion_hides_sphere(const OcclusionBuffer *buffer, Vec3 center, f32 radi
     Vec3 c = to_view(view, center);
     f32 nearest = c.z - radius * (1.0f + 1e-5f);
     if (!(nearest > view->near)) return false;
+    f32 limit = 1.0f / nearest;
+    // Most spheres are seen at their middle, which needs no exact bounds.
+    f32 mx = (c.x / (c.z * view->tan_x) * 0.5f + 0.5f) * (f32)buffer->width[0],
+        my = (0.5f - c.y / (c.z * view->tan_y) * 0.5f) * (f32)buffer->height[0];
+    if (mx >= 0.0f && my >= 0.0f && mx < (f32)buffer->width[0] && my < (f32)buffer->height[0] &&
+        !(buffer->low[0][(u32)my * buffer->width[0] + (u32)mx] > limit))
+        return false;
     f32 x0, x1, y0, y1;
     if (!sphere_bounds_axis(c.x, -c.z, radius, view->near, 1.0f / view->tan_x, &x0, &x1) ||
         !sphere_bounds_axis(c.y, -c.z, radius, view->near, 1.0f / view->tan_y, &y0, &y1))
@@ -389,7 +396,6 @@ bool occlusion_hides_sphere(const OcclusionBuffer *buffer, Vec3 center, f32 radi
     while (top + 1 < buffer->level_count &&
            ((r.x1 >> top) - (r.x0 >> top) > 1 || (r.y1 >> top) - (r.y0 >> top) > 1))
         top++;
-    f32 limit = 1.0f / nearest;
     for (i32 j = r.y0 >> top; j <= r.y1 >> top; j++)
         for (i32 i = r.x0 >> top; i <= r.x1 >> top; i++)
             if (!node_covers(buffer, top, i, j, r, limit)) return false;
