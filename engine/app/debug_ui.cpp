@@ -151,7 +151,8 @@ static void panel_counts(const App *app) {
     ImGui::Text("meshes    %u of %u", counts->drawables_visible, counts->drawables_total);
     ImGui::Text("triangles %u", counts->triangles);
     ImGui::Text("draws     %u, barriers %u", stats.draw_calls, stats.barriers);
-    ImGui::Text("fullest tile %u lights", counts->cell_light_max);
+    ImGui::Text("lists     %u entries, longest %u, %u clusters, %u without room",
+                stats.list_indices, stats.list_longest, stats.clusters, stats.list_fallbacks);
 }
 
 // Words separated by blanks become the zero-separated list that a combo wants.
@@ -256,7 +257,7 @@ static void panel_split(App *app) {
 static bool column_control(const ColumnDesc *column, void *value) {
     switch (column->type) {
     case COLUMN_F32: {
-        ImGuiSliderFlags flags = column->max > 100.0 ? ImGuiSliderFlags_Logarithmic : 0;
+        ImGuiSliderFlags flags = column->max > 10.0 ? ImGuiSliderFlags_Logarithmic : 0;
         f32 max = (f32)MIN(column->max, 1000.0), min = (f32)MAX(column->min, -1000.0);
         return ImGui::SliderFloat(column->name, (f32 *)value, min, max,
                                   column->max > 1.0 ? "%.2f" : "%.4f",
@@ -320,8 +321,13 @@ static void panel_manager(App *app) {
     ImGui::Text("%6u shaded, %u of them fading", c->lights_shaded, c->lights_fading);
     ImGui::Text("%6u near, %u between, %u far", c->lights_near, c->lights_between, c->lights_far);
     ImGui::Text("%6u occluders, %u drawables behind", c->occluders, c->drawables_occluded);
-    ImGui::Text("%6.2f ms lights, %.2f ms lists", (f64)app->session.packet_times.lights_ms,
-                (f64)app->session.packet_times.grid_ms);
+    const PacketBuildTimes *times = &app->session.packet_times;
+    ImGui::Text("%6.2f ms lights, %.2f ms lists", (f64)times->lights_ms, (f64)times->grid_ms);
+    static const char *const stages[] = {"candidates", "frustum", "occlusion", "merge",
+                                         "drop",       "budget",  "individual"};
+    static_assert(COUNT_OF(stages) == LIGHT_STAGE_COUNT, "a name for each stage");
+    for (u32 i = 0; i < LIGHT_STAGE_COUNT; i++)
+        ImGui::Text("   %.3f %s", (f64)times->light_stage_ms[i], stages[i]);
     if (!can_edit(app)) return;
     Table *table = app->session.world->tables[COMPONENT_light_manager];
     ImGui::PushID("manager");

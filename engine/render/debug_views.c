@@ -94,9 +94,9 @@ typedef struct Legend {
 } Legend;
 
 static Legend legend_begin(Renderer *renderer, DebugDraw *draw, const char *caption) {
-    f32 size = note_size(draw->packet);
-    note_add(renderer, TEXT_LEGEND, size, size, size, WHITE, "%s", caption);
-    return (Legend){renderer, draw, size, size, 2.4f * size};
+    f32 size = note_size(draw->packet), left = renderer->legend_left_px + size;
+    note_add(renderer, TEXT_LEGEND, left, size, size, WHITE, "%s", caption);
+    return (Legend){renderer, draw, size, left, 2.4f * size};
 }
 
 static void legend_row(Legend *legend, u32 color, const char *format, ...) PRINTF_LIKE(3, 4);
@@ -330,7 +330,8 @@ bool debug_view_upload(Renderer *renderer, const Packet *packet) {
     if (view == VIEW_FINAL) return true;
     if (!views[view].show) {
         f32 size = note_size(packet);
-        note_add(renderer, TEXT_LEGEND, size, size, size, WHITE, "%s%s%s", views[view].caption,
+        note_add(renderer, TEXT_LEGEND, renderer->legend_left_px + size, size, size, WHITE,
+                 "%s%s%s", views[view].caption,
                  view >= VIEW_GBUFFER_0 && view <= VIEW_GBUFFER_4 ? ", layout " : "",
                  view >= VIEW_GBUFFER_0 && view <= VIEW_GBUFFER_4
                      ? layout_table[packet->settings.layout].name

@@ -283,6 +283,7 @@ struct Renderer {
     u32 text_ends[TEXT_LAYER_COUNT]; // in quads: a layer goes from the last one's end to its own
     Note notes[NOTES_CAP];           // for the next text_upload
     u32 note_count;
+    f32 legend_left_px; // of debug views; a split picture's second legend stands right of the line
     GpuBuffer line_vertices; // of debug_draw.c
     u32 line_vertex_count;
 

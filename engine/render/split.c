@@ -63,6 +63,13 @@ static void add_captions(Renderer *r, const Packet *packet, const SplitView *spl
     }
 }
 
+// Where B's part begins, if there is room for a legend.
+static f32 legend_left(const Packet *b, const SplitView *split) {
+    f32 share = CLAMP(split->at, 0.0f, 1.0f);
+    if (split->mode == SPLIT_BOTH) share += 1.0f / BAND_SHARE;
+    return split->mode != SPLIT_DIFFERENCE && share < 0.8f ? share * (f32)b->width_px : 0.0f;
+}
+
 bool renderer_draw_split(Renderer *renderer, GpuCommands *cmd, const Packet *a, const Packet *b,
                          const SplitView *split, bool to_swapchain, const Overlay *overlay) {
     if (a->width_px != b->width_px || a->height_px != b->height_px) {
@@ -73,7 +80,9 @@ bool renderer_draw_split(Renderer *renderer, GpuCommands *cmd, const Packet *a, 
     renderer->stats = (RendererStats){.pipelines = renderer->stats.pipelines};
     device_lists_read(renderer, gpu_frame_slot(renderer->gpu));
     frame_sets_exchange(renderer);
+    renderer->legend_left_px = legend_left(b, split);
     bool ok = packet_draw(renderer, cmd, b);
+    renderer->legend_left_px = 0.0f;
     frame_sets_exchange(renderer);
     add_captions(renderer, a, split);
     if (!ok || !packet_draw(renderer, cmd, a)) return false;
