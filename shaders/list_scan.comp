@@ -58,9 +58,9 @@ void main() {
     atomicAdd(fallbacks, own_fallbacks);
     barrier();
     if (lane == 0u) {
-        grid_counters[GRID_COUNTER_LONGEST] = longest;
         // Clusters without room were counted before.
         uint before = CLUSTERED == 2u ? grid_counters[GRID_COUNTER_FALLBACKS] : 0u;
+        grid_counters[GRID_COUNTER_LONGEST] = before > 0u ? light_total() : longest;
         grid_counters[GRID_COUNTER_FALLBACKS] = before + fallbacks;
     }
 }

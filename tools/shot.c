@@ -241,6 +241,10 @@ static void json_counts(Json *json, const Shot *shot) {
     json_close(json);
     json_u64(json, "triangles", counts->triangles);
     json_u64(json, "draw_calls", stats.draw_calls);
+    json_u64(json, "list_indices", stats.list_indices);
+    json_u64(json, "list_longest", stats.list_longest);
+    json_u64(json, "list_fallbacks", stats.list_fallbacks);
+    json_u64(json, "list_clusters", stats.clusters);
     json_open_flat_object(json, "tiles");
     json_u64(json, "count", counts->cell_count);
     json_u64(json, "longest", counts->cell_light_max);
