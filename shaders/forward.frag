@@ -18,8 +18,36 @@ layout(location = 7) flat in float in_vertex_share;
 
 layout(location = 0) out vec4 out_color;
 
+// All lights of the frame, in their order. From the uniform blocks, which need no uniform index (to
+// make one costs more than the read), a loop for each block: choosing the block inside would read
+// both.
+#define LIGHTS_OF_BLOCK(block, base, first, last, light)                                           \
+    for (uint i = max(first, base); i < min(last, base + LIGHT_BLOCK_CAP); i++)                    \
+        sum += light(s, block[i - base].position, block[i - base].color);
+#define LIGHTS_OF_BLOCKS(first, last, light)                                                       \
+    {                                                                                              \
+        LIGHTS_OF_BLOCK(light_block_0, 0u, first, last, light)                                     \
+        if (LIGHT_BLOCKS == 2u) LIGHTS_OF_BLOCK(light_block_1, LIGHT_BLOCK_CAP, first, last, light) \
+    }
+vec3 all_light(Surface s) {
+    if (LIGHT_BLOCKS == 0u) return cell_light_list(s, cell_list_all(), true);
+    vec3 sum = vec3(0.0);
+    uint points = flow.counts.x, all = points + flow.counts.y;
+    LIGHTS_OF_BLOCKS(0u, flow.counts3.x, light_point)
+    LIGHTS_OF_BLOCKS(flow.counts3.x, points, light_point_diffuse)
+    if (SPOTS == 0u) return sum;
+    uint diffuse = points + flow.counts3.y;
+    for (uint i = points; i < diffuse; i++)
+        sum += light_spot(s, light_position(i), light_color(i), spot_direction(i - points),
+                          spot_edge(i - points));
+    for (uint i = diffuse; i < all; i++)
+        sum += light_spot_diffuse(s, light_position(i), light_color(i), spot_direction(i - points),
+                                  spot_edge(i - points));
+    return sum;
+}
+
 vec3 local_light(Surface s) {
-    if (CELL_LISTS == 0u) return cell_light_list(s, cell_list_all(), true);
+    if (CELL_LISTS == 0u) return all_light(s);
     // Lanes that only help with derivatives may lie beside the screen.
     uvec2 pixel = uvec2(clamp(gl_FragCoord.xy, vec2(0.0), frame.viewport.xy - 1.0));
     return cell_light(s, cell_of(pixel, frame.camera.w / max(gl_FragCoord.z, 1e-9)));

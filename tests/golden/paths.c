@@ -169,5 +169,11 @@ TEST_GPU(golden, sizes_and_warm_up) {
     RenderImage last = studio_draw(&studio, "main", &settings, 161, 91);
     assert_true(first.hash == last.hash);
     assert_int_equal(renderer_stats(studio.renderer).pipelines, pipelines);
+    // No path makes a pipeline that the warm-up did not.
+    for (u32 path = 0; path < PATH_COUNT; path++) {
+        settings.path = path;
+        studio_draw(&studio, "main", &settings, 161, 91);
+        assert_int_equal(renderer_stats(studio.renderer).pipelines, pipelines);
+    }
     studio_close(&studio);
 }
