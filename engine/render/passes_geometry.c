@@ -57,10 +57,9 @@ static void over_record(const PassContext *c) {
     draw_list(c, PIPELINE_FORWARD_BLEND, c->packet->blend_draws, false);
     gpu_cmd_end_rendering(c->cmd);
 }
-const Pass over_pass = {
-    "sky and glow",
-    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
-     USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-    5,
-    over_record,
-    NULL};
+const Pass over_pass = {"sky and glow",
+                        {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
+                         USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                        5,
+                        over_record,
+                        NULL};
