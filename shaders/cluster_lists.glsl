@@ -6,7 +6,9 @@
 // at a time, one a lane, depth first, so that lights come in the order of the leaves), else one by
 // one. Then each of the tile's clusters tests the gathered ones against its box and, if clusters
 // are told apart by normals, leaves out lights behind all of them. When more are gathered than fit
-// into shared memory, the clusters take them in several goes.
+// into shared memory, the clusters take them in several goes. A tile with many clusters is dealt
+// out to several groups (y), so that no invocation has more iterations of loops than the software
+// driver allows.
 #include "list_make.glsl"
 layout(local_size_x = 64) in;
 
@@ -30,14 +32,20 @@ struct Cluster {
     vec3 center_world; // from the eye, in the world's axes
 };
 
+// Ends of a slice, a tenth of a slice further on both sides: log2 is not exact.
+float slice_near(uint slice) {
+    return slice == 0u ? 0.0 : frame.slices.z * pow(frame.slices.w, float(slice) - 1.1);
+}
+float slice_far(uint slice) {
+    bool last = slice + 1u == flow.grid.z;
+    return last ? 1e18 : frame.slices.z * pow(frame.slices.w, float(slice) + 0.1);
+}
+
 Cluster cluster_of(Volume v, uint key) {
     uint slice = key & 255u;
-    // A tenth of a slice more on both sides: log2 is not exact.
-    float step = frame.slices.w, end = frame.slices.z * pow(step, float(slice) + 0.1);
-    float near = slice == 0u ? 0.0 : frame.slices.z * pow(step, float(slice) - 1.1);
     Cluster c;
-    near = max(near, v.near * 0.9999);
-    float far = min(slice + 1u == flow.grid.z ? 1e30 : end, v.far * 1.0001);
+    float near = max(slice_near(slice), v.near * 0.9999);
+    float far = min(slice_far(slice), v.far * 1.0001);
     c.low = vec3(min(v.side.xz * near, v.side.xz * far), near);
     c.high = vec3(max(v.side.yw * near, v.side.yw * far), far);
     c.center = (c.low + c.high) * 0.5;
@@ -70,8 +78,9 @@ bool light_in_cluster(Cluster c, uint index, bool spot) {
         vec3 to = c.center - light.at;
         float along = dot(to, light.axis);
         float across = sqrt(max(dot(to, to) - along * along, 0.0));
-        hit = hit && across * light.cos_half - along * light.sin_half <=
-                         c.radius * 1.001 + light.slack;
+        bool miss = across * light.cos_half - along * light.sin_half >
+                    c.radius * 1.001 + light.slack;
+        hit = hit && !miss;
     }
     if (CLUSTER_NORMALS != 0u) hit = hit && !light_behind(c, index);
     return hit;
@@ -228,9 +237,16 @@ void main() {
         TileDepthRecord seen = tile_depths[tile];
         v.near = seen.range.x;
         v.far = seen.range.y;
-        uint place = seen.mask.w, end = place + seen.mask.z;
-        bool any = place >= CLUSTER_FIRST && end > place;
-        if (!any) place = 0u, end = 0u;
+        if (CELL_SAMPLES > 1u) {
+            // Fragments are shaded at pixels' centres, at depths that no sample need have.
+            v.near = slice_near(cell_slice(seen.range.x));
+            v.far = slice_far(cell_slice(seen.range.y));
+        }
+        uint count = seen.mask.w >= CLUSTER_FIRST ? seen.mask.z : 0u;
+        uint part = (count + gl_NumWorkGroups.y - 1u) / gl_NumWorkGroups.y;
+        uint skipped = min(gl_WorkGroupID.y * part, count);
+        uint place = seen.mask.w + skipped, end = place + min(part, count - skipped);
+        bool any = end > place;
 #ifndef FILL
         for (uint i = place; i < end; i++)
             if (gl_SubgroupInvocationID == 0u) list_cells[i].list = uvec4(0u);

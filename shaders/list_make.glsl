@@ -36,7 +36,8 @@ uvec4 list_of_all() {
 }
 void write_list_of_all() {
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint i = gl_GlobalInvocationID.x; i < light_total(); i += stride)
+    uint end = gl_WorkGroupID.y == 0u ? light_total() : 0u;
+    for (uint i = gl_GlobalInvocationID.x; i < end; i += stride)
         list_indices[i] = light_in_order(i);
 }
 

@@ -11,15 +11,33 @@
 // Every list ends up in LIST_CELLS and LIST_INDICES, behind the list of all lights.
 #include "passes.h"
 
-// One subgroup a tile in groups of 64. A subgroup that is narrower or wider than the device said
-// takes more or fewer tiles: the shaders loop.
-static void dispatch_tiles(const PassContext *c, PipelineKind kind) {
+// One subgroup a tile in groups of 64, `parts` times. A subgroup that is narrower or wider than the
+// device said takes more or fewer tiles: the shaders loop.
+static void dispatch_parts(const PassContext *c, PipelineKind kind, u32 parts) {
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     u32 tiles = c->packet->frame.grid[0] * c->packet->frame.grid[1];
     u32 per_group = CLAMP(64 / MAX(gpu_info(c->renderer->gpu)->subgroup_size, 1), 1, 16);
     bind_frame(c, pipeline);
-    gpu_cmd_dispatch(c->cmd, MIN((tiles + per_group - 1) / per_group, 65535), 1, 1);
+    gpu_cmd_dispatch(c->cmd, MIN((tiles + per_group - 1) / per_group, 65535), parts, 1);
+}
+static void dispatch_tiles(const PassContext *c, PipelineKind kind) { dispatch_parts(c, kind, 1); }
+
+// Iterations of loops that one invocation may spend on a tile's clusters: the software driver stops
+// it after 65,535, silently.
+#define CLUSTER_ITERATIONS 48000
+
+// Parts for as many clusters as a tile can have: slices and directions of normals, or its pixels.
+// Each cluster looks at the tile's lights, a subgroup's size at a time.
+static void dispatch_clusters(const PassContext *c, PipelineKind kind) {
+    const Packet *packet = c->packet;
+    const u32 *grid = packet->frame.grid;
+    u64 clusters = grid[2] * (packet->settings.cluster_normals ? 6 : 1);
+    clusters = MIN(clusters, (u64)grid[3] * grid[3] * c->renderer->samples);
+    u64 lanes = CLAMP(gpu_info(c->renderer->gpu)->subgroup_size, 4, 64);
+    u64 goes = (packet->lights.count - 1) / lanes + 1;
+    u64 per_part = MAX(CLUSTER_ITERATIONS / goes, 1);
+    dispatch_parts(c, kind, (u32)((clusters + per_part - 1) / per_part));
 }
 
 // One group.
@@ -133,7 +151,7 @@ const Pass cluster_places_pass = {"cluster places",
                                   NULL};
 
 static void cluster_count_record(const PassContext *c) {
-    dispatch_tiles(c, PIPELINE_CLUSTER_COUNT);
+    dispatch_clusters(c, PIPELINE_CLUSTER_COUNT);
 }
 const Pass cluster_count_pass = {
     "cluster count",
@@ -152,7 +170,9 @@ const Pass cluster_list_scan_pass = {
     clusters_needed,
     NULL};
 
-static void cluster_fill_record(const PassContext *c) { dispatch_tiles(c, PIPELINE_CLUSTER_FILL); }
+static void cluster_fill_record(const PassContext *c) {
+    dispatch_clusters(c, PIPELINE_CLUSTER_FILL);
+}
 const Pass cluster_fill_pass = {
     "cluster fill",
     {USE(TILE_DEPTHS, STORAGE_READ_COMPUTE), USE(CLUSTERS, STORAGE_READ_COMPUTE),
