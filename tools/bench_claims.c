@@ -7,10 +7,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define WIDTH          1280
-#define HEIGHT         720
-#define LIGHTS         256
-#define MANAGED_LIGHTS 1024
+#define WIDTH  1280
+#define HEIGHT 720
+#define LIGHTS 256
 
 static void name_variant(FrameVariant *variant, const char *scene) {
     char word[48];
@@ -48,20 +47,22 @@ static bool claim_paths(Bench *bench, const char *id, const char *scene, const c
     return ok;
 }
 
-// The light manager against shading every light, from one camera.
-static bool claim_view(FrameBench *run, const char *id, const char *camera) {
+// The light manager against shading every light of the level, from one camera in one path. Tiled
+// lists leave out by themselves what lies elsewhere; the paths without lists depend on the manager.
+static bool claim_view(FrameBench *run, const char *id, const char *camera, RenderPath path) {
     Bench *bench = run->bench;
     run->view.camera = camera;
     FrameVariant variants[2] = {0};
     for (u32 v = 0; v < 2; v++) {
         variants[v].settings = settings_default();
-        variants[v].settings.path = PATH_TILED_DEFERRED;
-        variants[v].settings.light_limit = MANAGED_LIGHTS;
+        variants[v].settings.path = path;
         variants[v].settings.manager = v == 0;
-        snprintf(variants[v].name, sizeof variants[v].name, "%s, %u lights, manager %s", camera,
-                 MANAGED_LIGHTS, v == 0 ? "on" : "off");
+        char word[48];
+        settings_word("path", path, word, sizeof word);
+        snprintf(variants[v].name, sizeof variants[v].name, "%s, %s, manager %s", camera, word,
+                 v == 0 ? "on" : "off");
     }
-    FrameRounds rounds = {5, 31, 30, 0};
+    FrameRounds rounds = {5, 31, 12, 3000};
     if (bench->quick) rounds = (FrameRounds){2, 3, 1, 0};
     u64 mark = arena_mark(&bench->arena);
     RenderImage on, off;
@@ -74,11 +75,11 @@ static bool claim_view(FrameBench *run, const char *id, const char *camera) {
             image_compare(off.rgba, on.rgba, on.width_px, on.height_px, &bench->arena);
         frame_variant_add(bench, id, &variants[0], 1.0, true);
         frame_variant_add(bench, id, &variants[1], ratio, true);
-        bench_verdict(bench, id, ratio, BENCH_AT_LEAST, 1.5, "x",
-                      "%s, %u lights, manager off / on (%u / %u shaded)", camera, MANAGED_LIGHTS,
-                      variants[1].counts.lights_shaded, variants[0].counts.lights_shaded);
-        bench_verdict(bench, id, difference.ssim, BENCH_AT_LEAST, 0.98, "",
-                      "%s, SSIM of the manager's picture", camera);
+        bench_verdict(bench, id, ratio, BENCH_AT_LEAST, 1.5, "x", "%s off / on, %u of %u lights",
+                      variants[0].name, variants[0].counts.lights_shaded,
+                      variants[0].counts.lights_total);
+        bench_verdict(bench, id, difference.ssim, BENCH_AT_LEAST, 0.98, "", "%s, SSIM",
+                      variants[0].name);
     }
     arena_rewind(&bench->arena, mark);
     frame_variants_free(variants, 2);
@@ -88,10 +89,14 @@ static bool claim_view(FrameBench *run, const char *id, const char *camera) {
 static bool claim_manager(Bench *bench, const char *id) {
     static const char *const cameras[] = {"main", "chapter_house", "walk"};
     FrameBench run;
-    u32 width = bench->quick ? 320 : WIDTH, height = bench->quick ? 180 : HEIGHT;
-    if (!frame_bench_open(&run, bench, BENCH_LEVEL, width, height, COUNT_OF(cameras))) return false;
+    static const RenderPath paths[] = {PATH_TILED_DEFERRED, PATH_DEFERRED_VOLUMES, PATH_FORWARD};
+    u32 width = bench->quick ? 320 : WIDTH / 2, height = bench->quick ? 180 : HEIGHT / 2;
+    u32 steps = COUNT_OF(cameras) * COUNT_OF(paths);
+    if (!frame_bench_open(&run, bench, BENCH_LEVEL, width, height, steps)) return false;
     bool ok = true;
-    for (u32 i = 0; ok && i < COUNT_OF(cameras); i++) ok = claim_view(&run, id, cameras[i]);
+    for (u32 p = 0; p < COUNT_OF(paths); p++)
+        for (u32 i = 0; ok && i < COUNT_OF(cameras); i++)
+            ok = claim_view(&run, id, cameras[i], paths[p]);
     frame_bench_close(&run);
     return ok;
 }
@@ -102,11 +107,5 @@ bool bench_claims(Bench *bench, const char *id) {
     if (!claim_paths(bench, id, "hall", BENCH_LEVEL_HALL) ||
         !claim_paths(bench, id, "cloister", BENCH_LEVEL))
         return false;
-    ManagerCost cost;
-    if (!claim_manager(bench, id) || !bench_measure_manager(bench, id, &cost)) return false;
-    bench_verdict(bench, id, cost.lists_ms[0], BENCH_AT_MOST, 1.0, " ms",
-                  "lists of 1,000 lights, one core");
-    bench_verdict(bench, id, cost.lists_ms[1], BENCH_AT_MOST, 10.0, " ms",
-                  "lists of 10,000 lights, one core");
-    return true;
+    return claim_manager(bench, id) && bench_manager_verdicts(bench, id);
 }
