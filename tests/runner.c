@@ -1,11 +1,13 @@
 // runner.c: finds every registered test, runs it alone, and says how it went.
 // Data in: command line, the list that the TEST macros fill before main. Data out: a line a test,
 // then "N passed, N failed[, N skipped]"; exit status 0 only if something ran and nothing failed.
-// Called by: build.sh test, people, debuggers. Does not: choose seeds, retry, or run in parallel
-// (the engine's own threads and software rendering fill the machine).
+// Called by: build.sh test, people, debuggers. Does not: choose seeds, or retry.
 //
-//   luz_tests [--list] [--unit] [--no-fork] [--verbose] [filter...]
+//   luz_tests [--list] [--unit] [--jobs N] [--no-fork] [--verbose] [filter...]
 //
+// Several workers (--jobs) take tests from one list: compiling shaders, which is most of what a
+// drawing test does on a fresh machine, fills one core only. Tests with a window wait for real time
+// and run alone, at the end.
 // Each test runs in a forked child under cmocka, its output caught in an anonymous file and shown
 // only if it fails. The child tells its outcome by a page of shared memory; a child that dies
 // before that (signal, exit, time-out) has failed. With --no-fork a test runs in this process with
@@ -29,6 +31,7 @@
 #define TIMEOUT_S    300
 #define TEMP_ROOT    "build/tmp"
 #define OUTPUT_SHOWN KIB(64) // of a failing test; the end of it
+#define JOBS_CAP     16
 
 typedef enum Outcome { OUTCOME_NONE, OUTCOME_PASSED, OUTCOME_FAILED, OUTCOME_SKIPPED } Outcome;
 
@@ -40,6 +43,13 @@ typedef struct Shared {
     char reason[256]; // of skipping
 } Shared;
 
+// What the workers share.
+typedef struct Board {
+    u32 next; // test to take
+    u32 totals[4];
+} Board;
+
+static int print_lock = -1; // a file whose lock is held while a test's lines are printed
 static TestCase *first_test;
 static u32 test_count;
 static Shared *shared;
@@ -151,6 +161,12 @@ __attribute__((noreturn)) static void child_main(const TestCase *test, int outpu
     exit(shared->outcome == OUTCOME_FAILED ? 1 : 0);
 }
 
+static void lock_printing(bool lock) {
+    struct flock range = {.l_type = lock ? F_WRLCK : F_UNLCK, .l_whence = SEEK_SET};
+    while (print_lock >= 0 && fcntl(print_lock, F_SETLKW, &range) != 0 && errno == EINTR) {
+    }
+}
+
 static void show_output(int output) {
     off_t size = lseek(output, 0, SEEK_END);
     off_t at = size > (off_t)OUTPUT_SHOWN ? size - (off_t)OUTPUT_SHOWN : 0;
@@ -191,6 +207,7 @@ static Outcome run_forked(const TestCase *test, bool verbose, char *note, size_t
         outcome = OUTCOME_FAILED; // a sanitizer's verdict at exit
         snprintf(note, note_cap, "exit status %d at the end", WEXITSTATUS(status));
     }
+    lock_printing(true); // until the test's own line is printed
     if (outcome == OUTCOME_FAILED || verbose) show_output(output);
     close(output);
     return outcome;
@@ -220,6 +237,7 @@ static Outcome run_one(const TestCase *test, bool do_fork, bool verbose) {
     printf("%s %7.3f s  %s.%s%s%s\n", words[outcome], seconds, test->suite, test->name,
            note[0] ? ": " : "", note);
     fflush(stdout);
+    lock_printing(false);
     return outcome;
 }
 
@@ -247,7 +265,46 @@ static void print_test(const TestCase *test) {
            test->kind & TEST_KIND_SLOW ? " [slow]" : "");
 }
 
+static void *shared_page(u64 size) {
+    void *page = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    LUZ_ASSERT(page != MAP_FAILED);
+    return page;
+}
+
+// Tests without a window, by `jobs` processes; their totals.
+static void run_by_workers(TestCase **tests, u32 count, u32 jobs, bool verbose, u32 *totals) {
+    Board *board = shared_page(sizeof *board);
+    print_lock = memfd_create("luz test lock", MFD_CLOEXEC);
+    LUZ_ASSERT(print_lock >= 0);
+    fflush(NULL);
+    pid_t workers[JOBS_CAP];
+    for (u32 job = 0; job < jobs; job++) {
+        workers[job] = fork();
+        LUZ_ASSERT(workers[job] >= 0);
+        if (workers[job] != 0) continue;
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        shared = shared_page(sizeof *shared);
+        for (u32 i; (i = __atomic_fetch_add(&board->next, 1, __ATOMIC_RELAXED)) < count;) {
+            Outcome outcome = run_one(tests[i], true, verbose);
+            __atomic_fetch_add(&board->totals[outcome], 1, __ATOMIC_RELAXED);
+        }
+        fflush(NULL);
+        _exit(0);
+    }
+    for (u32 job = 0; job < jobs; job++) {
+        int status = 0;
+        while (waitpid(workers[job], &status, 0) < 0 && errno == EINTR) {
+        }
+        // A worker that died took a test with it.
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) totals[OUTCOME_FAILED]++;
+    }
+    for (u32 i = 0; i < 4; i++) totals[i] += board->totals[i];
+    close(print_lock);
+    print_lock = -1;
+}
+
 int main(int argc, char **argv) {
+    u32 jobs = (u32)CLAMP(sysconf(_SC_NPROCESSORS_ONLN), 1, JOBS_CAP);
     bool list = false, unit_only = false, do_fork = true, verbose = false;
     int filter_count = 0;
     for (int i = 1; i < argc; i++) {
@@ -257,13 +314,16 @@ int main(int argc, char **argv) {
             unit_only = true;
         else if (strcmp(argv[i], "--no-fork") == 0)
             do_fork = false;
+        else if (strcmp(argv[i], "--jobs") == 0 && i + 1 < argc && atoi(argv[i + 1]) > 0)
+            jobs = (u32)CLAMP(atoi(argv[++i]), 1, JOBS_CAP);
         else if (strcmp(argv[i], "--verbose") == 0)
             verbose = true;
         else if (argv[i][0] == '-') {
             fprintf(stderr,
-                    "usage: %s [--list] [--unit] [--no-fork] [--verbose] [filter...]\n"
+                    "usage: %s [--list] [--unit] [--jobs N] [--no-fork] [--verbose] [filter...]\n"
                     "  filter     run tests whose suite.name contains one of these\n"
                     "  --unit     only tests without GPU, window, or long runs\n"
+                    "  --jobs     tests at a time, default one a core\n"
                     "  --no-fork  in this process, for a debugger\n"
                     "  --verbose  show the output of passing tests too\n",
                     argv[0]);
@@ -273,15 +333,30 @@ int main(int argc, char **argv) {
     }
 
     TestCase **tests = calloc(MAX(test_count, 1), sizeof *tests);
-    shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    LUZ_ASSERT(tests && shared != MAP_FAILED);
+    shared = shared_page(sizeof *shared);
+    LUZ_ASSERT(tests);
     u32 count = 0;
     for (TestCase *test = first_test; test; test = test->next)
         if (test_is_chosen(test, unit_only, argv + 1, filter_count)) tests[count++] = test;
     qsort(tests, count, sizeof *tests, compare_tests);
 
-    u32 totals[4] = {0};
-    for (u32 i = 0; i < count; i++) {
+    u32 totals[4] = {0}, done = 0;
+    if (do_fork && !list) {
+        // Those with a window to the end, in their order.
+        TestCase **sorted = calloc(MAX(count, 1), sizeof *sorted);
+        LUZ_ASSERT(sorted);
+        u32 place = 0;
+        for (u32 window = 0; window < 2; window++) {
+            for (u32 i = 0; i < count; i++)
+                if (((tests[i]->kind & TEST_KIND_WINDOW) != 0) == window)
+                    sorted[place++] = tests[i];
+            if (!window) done = place;
+        }
+        memcpy(tests, sorted, count * sizeof *tests);
+        free(sorted);
+        run_by_workers(tests, done, MIN(jobs, MAX(done, 1)), verbose, totals);
+    }
+    for (u32 i = done; i < count; i++) {
         if (list)
             print_test(tests[i]);
         else

@@ -7,20 +7,20 @@
 // here, a case there, its bounds in tests/golden/layouts.c. The depth buffer is always there as
 // well: sky, textured emission and blended surfaces need it.
 //
-// | layout     | targets                                                              | from |
-// | ---------- | -------------------------------------------------------------------- | ---- |
-// | lean       | albedo, material; octahedral normal; position from the depth buffer  | ours |
-// | wide       | world position; world normal; albedo, material                       | Puig 2006,
-// 2 | | packed     | view normal x y, distance in two bytes; albedo, material             | Puig
-// 2006, 3 | | packed24   | view normal x y; distance in three bytes; albedo, material           |
-// Puig 2006, fig. 26 | | half5      | position from the eye; normal, power; albedo, material;
-// specular,    | Kubovcik 2014, 6.1 | |            | Fresnel; ambient light and emission | | |
-// killzone2  | ambient light and emission, intensity; view normal x y; motion x y,  | iL-engine |
-// |            | power, specular intensity; albedo, sun's visibility                  | |
-// | starcraft2 | emission, mask; normal, view depth; albedo, ambient occlusion;       | iL-engine |
-// |            | specular, power                                                      | |
-// | il         | albedo, mask; view normal x y, power, specular intensity; Oren-Nayar | iL-engine |
-// |            | pair, view depth; lightmap (ambient light, emission), mask           | |
+// clang-format off
+// lean        albedo, material; octahedral normal; position from the depth buffer (ours)
+// wide        world position; world normal; albedo, material (Puig 2006, chapter 2)
+// packed      view normal x y, distance in two bytes; albedo, material (Puig 2006, chapter 3)
+// packed24    view normal x y; distance in three bytes; albedo, material (Puig 2006, figure 26)
+// half5       position from the eye; normal, power; albedo, material; specular, Fresnel; ambient
+//             light and emission (Kubovcik 2014, 6.1)
+// killzone2   ambient light and emission, intensity; view normal x y; motion x y, power, specular
+//             intensity; albedo, sun's visibility (iL-engine)
+// starcraft2  emission, mask; normal, view depth; albedo, ambient occlusion; specular, power
+//             (iL-engine)
+// il          albedo, mask; view normal x y, power, specular intensity; Oren-Nayar pair, view
+//             depth; lightmap (ambient light, emission), mask (iL-engine)
+// clang-format on
 #include "render_internal.h"
 
 const LayoutRow layout_table[LAYOUT_COUNT] = {

@@ -49,9 +49,17 @@ bool light_manager_knows(const LightManagerState *state, const World *world, Ent
            world->tick - state->tick < LIGHT_MANAGER_STEP;
 }
 
-f32 light_fade(f32 from, f32 target, u32 ticks) {
-    f32 most = (f32)ticks / (f32)LIGHT_FADE_TICKS;
+static f32 fade(const LightSlot *slot, f32 from, f32 target, u32 ticks) {
+    f32 most = (f32)ticks / (f32)(slot->takes_place ? LIGHT_FADE_TICKS : LIGHT_WEIGHT_TICKS);
     return from + CLAMP(target - from, -most, most);
+}
+
+f32 light_slot_weight(const LightSlot *slot, u32 ticks) {
+    return fade(slot, slot->weight, slot->target, ticks);
+}
+
+f32 light_slot_pair_weight(const LightSlot *slot, u32 ticks) {
+    return fade(slot, slot->pair_weight, slot->pair_target, ticks);
 }
 
 const LightSlot *light_slot(const LightManagerState *state, Entity entity) {
@@ -62,7 +70,7 @@ const LightSlot *light_slot(const LightManagerState *state, Entity entity) {
 
 f32 light_manager_weight(const LightManagerState *state, const World *world, Entity light) {
     const LightSlot *slot = light_slot(state, light);
-    return slot ? light_fade(slot->weight, slot->target, world->tick - state->tick) : 1.0f;
+    return slot ? light_slot_weight(slot, world->tick - state->tick) : 1.0f;
 }
 
 Entity light_manager_partner(const LightManagerState *state, const World *world, Entity light,
@@ -70,7 +78,7 @@ Entity light_manager_partner(const LightManagerState *state, const World *world,
     const LightSlot *slot = light_slot(state, light);
     *weight = 0.0f;
     if (!slot || !slot->partner) return ENTITY_NONE;
-    *weight = light_fade(slot->pair_weight, slot->pair_target, world->tick - state->tick);
+    *weight = light_slot_pair_weight(slot, world->tick - state->tick);
     return slot->partner;
 }
 
@@ -100,8 +108,9 @@ static void advance_slots(LightManagerState *state, const LightTable *light, u32
             *slot = (LightSlot){.entity = entity, .weight = 1.0f, .target = 1.0f};
             continue;
         }
-        slot->weight = light_fade(slot->weight, slot->target, ticks);
-        slot->pair_weight = light_fade(slot->pair_weight, slot->pair_target, ticks);
+        f32 weight = light_slot_weight(slot, ticks);
+        slot->pair_weight = light_slot_pair_weight(slot, ticks);
+        slot->weight = weight;
     }
     for (u32 row = 0; row < light->table.count; row++) {
         held[row] = ROW_NONE;
@@ -182,6 +191,11 @@ static void step(LightManagerState *state, const World *world, const AssetStore 
         slot->pair_target = d.pair_weight[row];
         slot->pair_error = d.pair_error[row];
         slot->fate = d.fate[row];
+        // A pair and its two lights take each other's place: what one loses the other gains.
+        // Anything else goes, or comes, without a substitute.
+        u32 other = d.partner[row];
+        slot->takes_place =
+            other != ROW_NONE && MIN(d.weight[row], d.weight[other]) + d.pair_weight[row] > 0.999f;
         if (!at_once) continue;
         slot->weight = slot->target;
         slot->pair_weight = slot->pair_target;

@@ -8,7 +8,7 @@
 //
 // Every LIGHT_MANAGER_STEP ticks the whole decision is taken anew (light_decide.h); what is decided
 // is a share of each light's brightness, and of each merged light's, and what is shown moves
-// towards it by 1 / LIGHT_FADE_TICKS a tick at most. Between two steps it is a function of the
+// towards it by 1 / LIGHT_WEIGHT_TICKS, 1 / LIGHT_FADE_TICKS a tick at most. Between two steps it is a function of the
 // tick, so the state says the same whatever frames were drawn. It depends on ticks and cameras
 // alone: not on settings, on the picture's size, or on threads.
 //
@@ -22,7 +22,11 @@ extern "C" {
 #endif
 
 #define LIGHT_MANAGER_STEP 6u  // ticks
-#define LIGHT_FADE_TICKS   15u // a quarter of a second
+#define LIGHT_FADE_TICKS   15u // a quarter of a second: a pair becomes one, or two again
+// What drops out or comes back (too small, too faint, over the budget) has nothing that takes its
+// place, so it takes longer, two seconds: a wall that one light lights changes by 3 / 255 a tick. Where
+// a budget takes many at once it is up to 10.
+#define LIGHT_WEIGHT_TICKS 120u
 
 LightManagerState *light_manager_create(void);
 void light_manager_destroy(LightManagerState *state); // NULL is fine

@@ -10,7 +10,8 @@ typedef struct LightSlot {
     f32 weight, target;           // of the light's own brightness
     f32 pair_weight, pair_target; // of the merged light's; the same in both partners' slots
     f32 pair_error;
-    u32 fate; // LightDecision.fate
+    u32 fate;         // LightDecision.fate
+    bool takes_place; // the shares move at a pair's pace; the same in both partners' slots
 } LightSlot;
 
 struct LightManagerState {
@@ -30,6 +31,7 @@ struct LightManagerState {
 
 // NULL if the state does not know this entity.
 const LightSlot *light_slot(const LightManagerState *state, Entity entity);
-// From a weight towards its target, `ticks` later.
-f32 light_fade(f32 from, f32 target, u32 ticks);
+// A slot's shares `ticks` after the state's: its own and its pair's.
+f32 light_slot_weight(const LightSlot *slot, u32 ticks);
+f32 light_slot_pair_weight(const LightSlot *slot, u32 ticks);
 #endif

@@ -102,13 +102,13 @@ static LightDecision read_state(const LightManagerState *state, const World *wor
     for (u32 row = 0; row < count; row++) {
         const LightSlot *slot = light_slot(state, light->table.entity[row]);
         if (!slot) continue; // came after the last step
-        d.weight[row] = light_fade(slot->weight, slot->target, ticks);
+        d.weight[row] = light_slot_weight(slot, ticks);
         d.fate[row] = (u8)slot->fate;
         if (!slot->partner) continue;
         u32 other = table_row(&light->table, slot->partner);
         if (other == ROW_NONE) continue;
         d.partner[row] = other;
-        d.pair_weight[row] = light_fade(slot->pair_weight, slot->pair_target, ticks);
+        d.pair_weight[row] = light_slot_pair_weight(slot, ticks);
         d.pair_error[row] = slot->pair_error;
     }
     return d;

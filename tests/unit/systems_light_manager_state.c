@@ -178,7 +178,7 @@ TEST(systems_light_manager_state, settles_to_what_is_decided_afresh) {
     manager_columns(f)->merge_distance[0] = 8;
     manager_columns(f)->merge_error[0] = 0.3f;
     manager_columns(f)->drop_area[0] = 3000;
-    for (u32 i = 0; i < 60; i++) tick(f, slow, ENTITY_NONE);
+    for (u32 i = 0; i < 400; i++) tick(f, slow, ENTITY_NONE);
     cut(f, fresh, ENTITY_NONE);
     u32 pairs = 0, none = 0;
     for (u32 row = 0; row < light->table.count; row++) {
