@@ -137,47 +137,47 @@ float attenuation(float d2, float inv_d, float inv_range2) {
     return window * window * min(inv_d * inv_d, 1e4); // 1 / max(d, 1 cm)^2
 }
 
-vec3 light_point(Surface s, vec4 position, vec4 color) {
-    vec3 l = position.xyz - s.position;
-    float d2 = max(dot(l, l), 1e-8);
+// How a light's rays arrive at a surface: unit direction to the light, n.l, and the falloff times
+// n.l.
+struct Arrival {
+    vec3 l;
+    float n_dot_l, falloff;
+};
+Arrival light_arrival(Surface s, vec4 position) {
+    Arrival a;
+    vec3 to_light = position.xyz - s.position;
+    float d2 = max(dot(to_light, to_light), 1e-8);
     float inv_d = inversesqrt(d2);
-    l *= inv_d;
-    float n_dot_l = max(dot(s.normal, l), 0.0);
-    return color.rgb * brdf(s, l, n_dot_l, color.w) * (attenuation(d2, inv_d, position.w) * n_dot_l);
+    a.l = to_light * inv_d;
+    a.n_dot_l = max(dot(s.normal, a.l), 0.0);
+    a.falloff = attenuation(d2, inv_d, position.w) * a.n_dot_l;
+    return a;
+}
+// Share of a spot's light in direction -l. edge: SpotRecord.edge.x.
+float spot_cone(vec3 l, vec4 direction, float edge) {
+    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
 }
 
-// edge: SpotRecord.edge.x.
+vec3 light_point(Surface s, vec4 position, vec4 color) {
+    Arrival a = light_arrival(s, position);
+    return color.rgb * brdf(s, a.l, a.n_dot_l, color.w) * a.falloff;
+}
 vec3 light_spot(Surface s, vec4 position, vec4 color, vec4 direction, float edge) {
-    vec3 l = position.xyz - s.position;
-    float d2 = max(dot(l, l), 1e-8);
-    float inv_d = inversesqrt(d2);
-    l *= inv_d;
-    float n_dot_l = max(dot(s.normal, l), 0.0);
-    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
-    float cone = t * t * (3.0 - 2.0 * t);
-    return color.rgb * brdf(s, l, n_dot_l, color.w) *
-           (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
+    Arrival a = light_arrival(s, position);
+    return color.rgb * brdf(s, a.l, a.n_dot_l, color.w) *
+           (a.falloff * spot_cone(a.l, direction, edge));
 }
 
 // The same lights without a highlight, for those whose color.w is 0: the same bits, cheaper.
 vec3 light_point_diffuse(Surface s, vec4 position, vec4 color) {
-    vec3 l = position.xyz - s.position;
-    float d2 = max(dot(l, l), 1e-8);
-    float inv_d = inversesqrt(d2);
-    l *= inv_d;
-    float n_dot_l = max(dot(s.normal, l), 0.0);
-    return color.rgb * brdf_diffuse(s, l, n_dot_l) * (attenuation(d2, inv_d, position.w) * n_dot_l);
+    Arrival a = light_arrival(s, position);
+    return color.rgb * brdf_diffuse(s, a.l, a.n_dot_l) * a.falloff;
 }
 vec3 light_spot_diffuse(Surface s, vec4 position, vec4 color, vec4 direction, float edge) {
-    vec3 l = position.xyz - s.position;
-    float d2 = max(dot(l, l), 1e-8);
-    float inv_d = inversesqrt(d2);
-    l *= inv_d;
-    float n_dot_l = max(dot(s.normal, l), 0.0);
-    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
-    float cone = t * t * (3.0 - 2.0 * t);
-    return color.rgb * brdf_diffuse(s, l, n_dot_l) *
-           (attenuation(d2, inv_d, position.w) * n_dot_l * cone);
+    Arrival a = light_arrival(s, position);
+    return color.rgb * brdf_diffuse(s, a.l, a.n_dot_l) *
+           (a.falloff * spot_cone(a.l, direction, edge));
 }
 
 // Share of directional 0 that arrives: 4 taps of 2x2 hardware comparison around the point, which

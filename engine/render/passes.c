@@ -112,6 +112,7 @@ void begin(const PassContext *c, const GpuRendering *rendering) {
     sized.height = c->packet->height_px;
     gpu_cmd_begin_rendering(c->cmd, &sized);
 }
+
 const PathRow path_table[PATH_COUNT] = {
     [PATH_FORWARD] = {"forward",
                       {&shadow_pass, &forward_pass, &over_pass, &samples_pass, &post_pass}},
