@@ -75,6 +75,57 @@ typedef struct MeshVertex {
 #define BINDING_EMISSIVE_TEXTURE 2
 #define BINDING_MATERIAL_COUNT   3
 
+// --- Set 2 of passes that read the voxels for the screen: global illumination (render/gi.h). ---
+#define BINDING_GI             0  // GiRecord, uniform
+#define BINDING_GI_TRACED      1  // TracedLightRecord[GI_TRACED_CAP], uniform
+#define BINDING_GI_FLOW        2  // GiRecord, storage: for values that steer loops
+#define BINDING_GI_MASKS       3  // uint[], storage: see BUILD_MASKS
+#define BINDING_GI_RANKS       4  // uint[], storage
+#define BINDING_GI_ATTRIBUTES  5  // uint[], storage
+#define BINDING_GI_FIRST_IMAGE 6
+#define BINDING_GI_BASE        6  // sampled 3D: radiance and opacity, one a voxel
+#define BINDING_GI_ATLAS       7  // sampled 3D with mips: six directions side by side along x
+#define BINDING_GI_ATLAS_NEAREST_MIP 8 // the same, the nearest mip alone
+#define BINDING_GI_IRRADIANCE  9  // sampled 3D: of voxels, see gi.glsl
+#define BINDING_GI_VISIBILITY  10 // sampled 3D: mean visibility of the lights
+#define BINDING_GI_PROBES      11 // sampled 3D: six directions side by side along x
+#define BINDING_GI_TRACE_0     12 // sampled: indirect diffuse (without albedo), w ambient visibility
+#define BINDING_GI_TRACE_1     13 // sampled: indirect specular (without the specular colour)
+#define BINDING_GI_TRACE_0_STORAGE 14 // the same, storage images rgba16f
+#define BINDING_GI_TRACE_1_STORAGE 15
+#define BINDING_GI_COUNT       16
+// --- Set 0 of passes that make the voxels (they do not see the frame's set; set 1 as ever). ---
+#define BUILD_GI            0  // GiRecord, uniform
+#define BUILD_FRAME         1  // FrameRecord, uniform
+#define BUILD_MATERIALS     2  // MaterialRecord[], uniform
+#define BUILD_DIRECTIONALS  3  // DirectionalRecord[], uniform
+#define BUILD_FIRST_STORAGE 4
+#define BUILD_FLOW          4  // GiRecord, storage
+#define BUILD_VERTICES      5  // MeshVertex[] as uint[], storage: all meshes
+#define BUILD_MESH_INDICES  6  // uint[], storage: all meshes
+#define BUILD_INSTANCES     7  // InstanceRecord[], storage: the packet's gi_instances
+#define BUILD_MASKS         8  // uint[], storage: a bit a voxel, in layers (GI_MASK_*)
+#define BUILD_RANKS         9  // uint[], storage: set bits before each word of the masks
+#define BUILD_VOXELS        10 // uint[], storage: place of each occupied voxel (GI_VOXEL_*), by slot
+#define BUILD_ATTRIBUTES    11 // uint[], storage: GI_ATTRIBUTE_WORDS a slot
+#define BUILD_ACCUMULATORS  12 // uint[], storage: sums of what falls into a voxel
+#define BUILD_RADIANCE      13 // uint[], storage: what voxels send out, half floats, by slot and face
+#define BUILD_COUNTERS      14 // uint[], storage: GI_COUNTER_*, and arguments of dispatches
+#define BUILD_LIGHTS        15 // GiLightRecord[], storage: the packet's gi_lights
+#define BUILD_LISTS         16 // uint[], storage: lights of the cells of a grid over the volume
+#define BUILD_FIRST_IMAGE   17
+#define BUILD_SHADOW_MAP    17 // sampled, comparison
+#define BUILD_BASE          18 // sampled
+#define BUILD_ATLAS         19 // sampled
+#define BUILD_FIRST_STORAGE_IMAGE 20
+#define BUILD_BASE_STORAGE  20 // storage image, format of SPEC_GI_FORMAT
+#define BUILD_IRRADIANCE    21 // storage image rgba16f
+#define BUILD_VISIBILITY    22 // storage image r8
+#define BUILD_PROBES        23 // storage image rgba16f
+#define BUILD_MIP_SOURCE    24 // storage image: a level of the atlas
+#define BUILD_MIP_TARGET    25 // the next one
+#define BUILD_COUNT         26
+
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---
 #define SPEC_BRDF_MASK     0 // bit Brdf: specular lobes that the level uses; bit 4: Oren-Nayar; bit 5: Fresnel
@@ -105,7 +156,19 @@ typedef struct MeshVertex {
 #define SPEC_CLUSTER_NORMALS 25 // 1 = cluster keys have bits of the normal's direction
 #define SPEC_VERTEX_LIGHTING 26 // forward shading: PacketDraw.vertex_lit
 #define SPEC_POST          27 // of a post pass: a switch of its own (post_fog.frag, split.frag, tonemap.frag)
-#define SPEC_COUNT         28
+#define SPEC_GI_DIRECTIONS 28 // blocks of the atlas: 6, 1 = isotropic
+#define SPEC_GI_FACES      29 // 0 = base volume and an atlas of half its size, 1 = atlas alone, of full size
+#define SPEC_GI_NEAREST_MIPS 30 // 1 = cones read the nearest mip
+#define SPEC_GI_CASCADES   31 // 1..GI_CASCADES_CAP
+#define SPEC_GI_DIFFUSE    32 // GiDiffuse: 0 none, 1 cones, 2 probes, 3 voxels
+#define SPEC_GI_FEATURES   33 // GI_FEATURE_*
+#define SPEC_GI_COSINE     34 // 0 average, 1 weighted
+#define SPEC_GI_STEP       35 // of a pass that runs in several steps: which
+#define SPEC_GI_VISIBILITY 36 // bit VoxelShadow: ways in which voxels ask whether a light is seen
+#define SPEC_GI_FORMAT     37 // 0 = rgba16f, 1 = rgba8 of radiance / GiRecord.scale.x
+#define SPEC_GI_RESOLUTION 38 // log2 of pixels a traced one covers along a side: 0, 1, 2
+#define SPEC_GI_TRACED     39 // bit 0: cones, bit 1: visibility volume; of lights with traced shadows
+#define SPEC_COUNT         40
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
 #define GBUFFER_LAYOUT_LEAN       0
@@ -128,6 +191,15 @@ typedef struct MeshVertex {
 #define DEBUG_CELL_LIGHTS 14
 #define DEBUG_TILE_DEPTH  15
 #define DEBUG_CLUSTERS    16
+// The pictures of global illumination, and what of the voxels is shown (setting gi.show).
+#define DEBUG_GI_VOXELS   24
+#define DEBUG_GI_INDIRECT 25
+#define DEBUG_GI_DIFFUSE  26
+#define DEBUG_GI_SPECULAR 27
+#define DEBUG_GI_AO       28
+#define DEBUG_GI_STEPS    29
+#define DEBUG_GI_PROBES   30
+#define DEBUG_GI_LEAKS    31
 
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
@@ -160,6 +232,73 @@ typedef struct MeshVertex {
 // Key of an occupied cluster: tile << 11 | direction of the normal (0..5, see cluster_keys.glsl)
 // << 8 | slice.
 #define CLUSTER_TILE_SHIFT     11
+
+
+// --- Global illumination ---
+#define GI_CASCADES_CAP 3
+#define GI_TRACED_CAP   16 // lights whose shadows on the screen come from the voxels
+#define GI_FEATURE_SPECULAR 1
+#define GI_FEATURE_AO       2
+#define GI_FEATURE_DITHER   4
+// Layers of the masks; each has a bit for every voxel of all cascades (they lie one after another
+// along z): bit x + dims.x * (y + dims.y * (z + dims.z * cascade)).
+#define GI_MASK_STATIC  0
+#define GI_MASK_DYNAMIC 1 // of voxels that are not static
+#define GI_MASK_SOLID   2 // inside of closed meshes, not on their surface
+#define GI_MASK_COUNT   3
+// A voxel's place in one word.
+#define GI_VOXEL_X_SHIFT 0  // 9 bits
+#define GI_VOXEL_Y_SHIFT 9  // 9 bits
+#define GI_VOXEL_Z_SHIFT 18 // 11 bits, with the cascade's offset
+// What a slot holds: albedo RGBA8 (a: 255 = static), normal (3 x 10 bits, 0..1 coded; length tells
+// how well the fragments agree), emission (shared exponent, see gi.glsl), then how much of the
+// surface faces each axis: +x -x +y -y in bytes, +z -z in the next word.
+#define GI_ATTRIBUTE_ALBEDO   0
+#define GI_ATTRIBUTE_NORMAL   1
+#define GI_ATTRIBUTE_EMISSION 2
+#define GI_ATTRIBUTE_FACES_0  3
+#define GI_ATTRIBUTE_FACES_1  4
+#define GI_ATTRIBUTE_WORDS    5
+// Counters. The dispatch arguments are groups of 64 slots, y = z = 1.
+#define GI_COUNTER_STATIC       0 // occupied static voxels (slots 0..)
+#define GI_COUNTER_DYNAMIC      1 // occupied dynamic ones (their slots follow the static ones)
+#define GI_COUNTER_LOST         2 // voxels that found no slot
+#define GI_COUNTER_ALL_ARGS     4 // 3 words: dispatch over all slots
+#define GI_COUNTER_DYNAMIC_ARGS 8 // 3 words: over the dynamic ones
+#define GI_COUNTER_COUNT        16
+
+SHARED_STRUCT(GiRecord) {
+    vec4 origin[GI_CASCADES_CAP]; // xyz lower corner, world; w voxel size, m. 0 is the finest
+    uvec4 dims;        // voxels of one cascade in x, y, z (powers of two), w cascades
+    uvec4 atlas;       // level 0 of one direction's block, one cascade: x, y, z; w levels
+    vec4 strength;     // x of indirect light, y AO lambda 1/m, z AO floor, w hit of soft rays
+    vec4 cone;         // x tan(diffuse aperture / 2), y step factor, z longest distance m,
+                       // w offset of the start along the normal, voxels
+    vec4 specular;     // x tan(smallest aperture / 2)
+    vec4 scale;        // x radiance that 1 means in format byte, y factor on the sky's light
+    uvec4 light_grid;  // cells in x, y, z over all cascades' box; w lights
+    vec4 light_grid_origin; // xyz world; w unused
+    vec4 light_grid_rate;   // xyz cells a metre
+    uvec4 probes;      // probes in x, y, z; w every so many frames a probe's turn comes
+    vec4 probe_origin; // xyz of probe 0; w spacing m
+    vec4 trace;        // traced pixels: width, height, 1 / width, 1 / height
+    uvec4 counts;      // traced lights, instances, slots that buffers hold, tick
+    uvec4 show;        // debug picture of voxels: what (GiShow), level, direction
+} SHARED_END(GiRecord)
+
+// A light as voxels see it.
+SHARED_STRUCT(GiLightRecord) {
+    vec4 position;   // xyz world, w 1 / range^2
+    vec4 color;      // rgb * intensity; w VoxelShadow: 0 none, 1 shadow_map, 2 ray, 3 soft_ray
+    vec4 direction;  // xyz unit, the way it shines; w cos outer (less than -1: a point)
+    vec4 extra;      // x 1 / (cos inner - cos outer), y kind: 0 point, 1 spot, 2 directional
+} SHARED_END(GiLightRecord)
+
+// A light of the screen whose shadow comes from the voxels; the packet's other lights lack it.
+SHARED_STRUCT(TracedLightRecord) {
+    GiLightRecord light; // color.w: factor on the highlight
+    vec4 shadow;         // x tan(aperture / 2), y softness, z 0 cone, 1 visibility volume
+} SHARED_END(TracedLightRecord)
 
 SHARED_STRUCT(FrameRecord) {
     mat4 view_projection; // world to clip, reversed depth, infinite far

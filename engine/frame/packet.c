@@ -85,7 +85,7 @@ static const char *check_layout(const Packet *packet, u64 size) {
 }
 
 static const char *check_header(const Packet *packet) {
-    if (packet->flags & ~(u32)(PACKET_REVOXELISE | PACKET_RELIGHT)) return "unknown flags";
+    if (packet->flags & ~(u32)(PACKET_REVOXELISE | PACKET_RELIGHT | PACKET_COLD)) return "unknown flags";
     if (packet->reserved != 0) return "reserved field is not zero";
     if (packet->width_px < 1 || packet->width_px > PACKET_SIDE_MAX || packet->height_px < 1 ||
         packet->height_px > PACKET_SIDE_MAX)
@@ -208,7 +208,8 @@ static const char *check_lights(const Packet *packet) {
     } records[] = {{packet->lights, sizeof(LightRecord)},
                    {packet->spots, sizeof(SpotRecord)},
                    {packet->directionals, sizeof(DirectionalRecord)},
-                   {packet->gi_lights, sizeof(LightRecord)}};
+                   {packet->gi_lights, sizeof(GiLightRecord)},
+                   {packet->traced_lights, sizeof(TracedLightRecord)}};
     for (u32 i = 0; i < COUNT_OF(records); i++) {
         const u8 *data = (const u8 *)packet + records[i].section.offset;
         if (!floats_finite(data, (u64)records[i].section.count * records[i].size / sizeof(f32)))

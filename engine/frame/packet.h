@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 #define PACKET_MAGIC   0x4B505A4Cu // "LZPK"
-#define PACKET_VERSION 3u
+#define PACKET_VERSION 4u
 
 typedef struct PacketSection {
     u32 offset, count;
@@ -87,6 +87,9 @@ typedef struct PacketLightMark {
 typedef enum PacketFlags {
     PACKET_REVOXELISE = 1 << 0, // a dynamic instance changed since the last packet
     PACKET_RELIGHT = 1 << 1,    // a light or emission changed
+    // The picture must not hang on what was drawn before: pictures that are hashed or kept. GI that
+    // is spread over frames (gi.share, gi.feedback, policies) does all its work at once.
+    PACKET_COLD = 1 << 2,
 } PacketFlags;
 
 // X(name, element type)
@@ -110,7 +113,12 @@ typedef enum PacketFlags {
     X(light_marks, PacketLightMark) /* for debug pictures, else empty */                           \
     X(occluder_depths,                                                                             \
       f32) /* for its debug picture: counts.occluder_* size, metres, else empty */                 \
-    X(gi_lights, LightRecord) /* all that affect GI, also outside the view */                      \
+    X(gi_instances, InstanceRecord) /* of all that is voxelised, seen or not: static, dynamic */   \
+    X(gi_static_draws, PacketDraw)  /* of these instances */                                       \
+    X(gi_dynamic_draws, PacketDraw)                                                                \
+    X(gi_lights, GiLightRecord) /* all local lights that affect GI, also outside the view */       \
+    X(gi_lists, u32)  /* grid over the volume: offset, count of each cell; then light indices */   \
+    X(traced_lights, TracedLightRecord) /* of the view: their shadows come from the voxels */      \
     X(texts, PacketText)                                                                           \
     X(characters, u8)
 
@@ -129,7 +137,21 @@ typedef struct PacketCounts {
     u32 triangles;                                     // of visible drawables
     u32 cell_count, cell_light_max, light_index_count; // of lists made on the CPU
     u32 cell_fallbacks; // cells that use the list of all lights because memory ran out
+    u32 gi_lights, gi_light_indices; // local lights of the voxels, entries of their lists
 } PacketCounts;
+
+// Global illumination as this packet wants it; params.enabled = 0: its sections are empty. What the
+// voxels show hangs on these keys (hashes of contents) alone: as long as a key stays, so does what
+// was made under it. The flags are raised by change stamps, and whenever a key changes so is its
+// flag; a change that leaves no trace (there and back, a light that is off) raises a flag alone.
+typedef struct PacketGi {
+    u64 static_key;  // grid, static instances, their meshes and materials
+    u64 dynamic_key; // dynamic ones
+    u64 light_key;   // lights, emission, and parameters of lighting
+    u64 reserved;
+    GiParams params;
+    GiRecord record;
+} PacketGi;
 
 typedef struct Packet {
     u32 magic, version;
@@ -143,6 +165,7 @@ typedef struct Packet {
     RenderSettings settings;
     PacketCounts counts;
     FrameRecord frame;
+    PacketGi gi;
 #define X(name, Type) PacketSection name;
     PACKET_SECTIONS(X)
 #undef X

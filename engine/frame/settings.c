@@ -10,8 +10,8 @@
 #include <string.h>
 
 const SettingDesc render_setting_descs[] = {
-#define S(type, name, group, initial, min, max, words, help)                                       \
-    {#name,                                                                                        \
+#define ROW(key, field, type, group, initial, min, max, words, help)                               \
+    {key,                                                                                          \
      words,                                                                                        \
      help,                                                                                         \
      SETTING_##type,                                                                               \
@@ -19,9 +19,27 @@ const SettingDesc render_setting_descs[] = {
      initial,                                                                                      \
      min,                                                                                          \
      max,                                                                                          \
-     offsetof(RenderSettings, name)},
+     offsetof(RenderSettings, field)},
+#define S(type, name, ...) ROW(#name, name, type, __VA_ARGS__)
     RENDER_SETTINGS(S)
 #undef S
+#define S(type, name, ...) ROW("gi." #name, gi_##name, type, __VA_ARGS__)
+        GI_SETTINGS(S)
+#undef S
+// Parameters of the level: the words after "level" are the level's.
+#define GI_HELP        "overrules the level's value; level = does not"
+#define GI_HELP_NUMBER "overrules the level's value; below the level's range = does not"
+#define B(name)        ROW("gi." #name, gi_##name, ENUM, GI, 0, 0, 2, "level off on", GI_HELP)
+#define E(name, words, count)                                                                      \
+    ROW("gi." #name, gi_##name, ENUM, GI, 0, 0, count, "level " words, GI_HELP)
+#define U(name, min, max) ROW("gi." #name, gi_##name, U32, GI, 0, 0, max, "", GI_HELP_NUMBER)
+#define F(name, min, max) ROW("gi." #name, gi_##name, F32, GI, -1, -1, max, "", GI_HELP_NUMBER)
+            GI_PARAMS(B, E, U, F)
+#undef B
+#undef E
+#undef U
+#undef F
+#undef ROW
 };
 const char *const setting_group_titles[SETTING_GROUP_COUNT] = {
 #define X(id, title) title,

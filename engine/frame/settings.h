@@ -63,12 +63,21 @@ typedef enum DebugView {
     VIEW_LIGHT_LODS,    // near, between, far
     VIEW_OCCLUDERS,     // the depth buffer that lights are tested against
     VIEW_LAYERS,        // as overdraw, without the depth test: all that lies behind a pixel
+    VIEW_GI_VOXELS,     // the voxels themselves, from the camera: what of them is setting gi.show
+    VIEW_GI_INDIRECT,   // indirect light alone
+    VIEW_GI_DIFFUSE,    // its parts; diffuse without albedo
+    VIEW_GI_SPECULAR,
+    VIEW_GI_AO,
+    VIEW_GI_STEPS,  // heat map of the cones' steps
+    VIEW_GI_PROBES, // each probe as a ball
+    VIEW_GI_LEAKS,  // indirect light where every light that arrives has passed a surface
     VIEW_COUNT
 } DebugView;
 #define VIEW_WORDS                                                                                 \
     "final albedo normal depth material position emissive specular motion gbuffer_0 gbuffer_1 "    \
     "gbuffer_2 gbuffer_3 gbuffer_4 cell_lights tile_depth clusters overdraw light_rects "          \
-    "light_volumes light_states light_lods occluders layers"
+    "light_volumes light_states light_lods occluders layers gi_voxels gi_indirect gi_diffuse "     \
+    "gi_specular gi_ao gi_steps gi_probes gi_leaks"
 
 typedef enum SpecularPower { SPECULAR_FAST, SPECULAR_EXACT, SPECULAR_COUNT } SpecularPower;
 // Who decides which lights touch a tile, and how (specification of direct lighting, 6.2).
@@ -94,12 +103,102 @@ typedef enum VolumeFaces {
 typedef enum Palette { PALETTE_BUFFER, PALETTE_TEXTURE, PALETTE_COUNT } Palette;
 typedef enum Msaa { MSAA_1, MSAA_4, MSAA_COUNT } Msaa;
 
+// --- Global illumination ---
+typedef enum GiFormat { GI_FORMAT_HALF, GI_FORMAT_BYTE } GiFormat;
+typedef enum GiVoxeliser {
+    GI_VOXELISER_AUTO,
+    GI_VOXELISER_RASTER,
+    GI_VOXELISER_COMPUTE
+} GiVoxeliser;
+typedef enum GiPolicy {
+    GI_POLICY_ON_CHANGE,
+    GI_POLICY_EVERY_FRAME,
+    GI_POLICY_EVERY_N,
+    GI_POLICY_NEVER // only when nothing is there yet
+} GiPolicy;
+typedef enum GiCosine { GI_COSINE_AVERAGE, GI_COSINE_WEIGHTED } GiCosine;
+typedef enum GiFaces { GI_FACES_SHARED, GI_FACES_APART } GiFaces;
+typedef enum GiFilter { GI_FILTER_DIRECTIONAL, GI_FILTER_ISOTROPIC } GiFilter;
+typedef enum GiDiffuse {
+    GI_DIFFUSE_NONE,
+    GI_DIFFUSE_CONES,
+    GI_DIFFUSE_PROBES,
+    GI_DIFFUSE_VOXELS
+} GiDiffuse;
+typedef enum GiResolution {
+    GI_RESOLUTION_FULL,
+    GI_RESOLUTION_HALF,
+    GI_RESOLUTION_QUARTER
+} GiResolution;
+typedef enum GiMips { GI_MIPS_LINEAR, GI_MIPS_NEAREST } GiMips;
+typedef enum GiShow { // what VIEW_GI_VOXELS shows
+    GI_SHOW_RADIANCE,
+    GI_SHOW_ALBEDO,
+    GI_SHOW_NORMAL,
+    GI_SHOW_EMISSION,
+    GI_SHOW_STATIC,
+    GI_SHOW_VISIBILITY,
+    GI_SHOW_IRRADIANCE,
+    GI_SHOW_COUNT
+} GiShow;
+#define GI_SHOW_WORDS      "radiance albedo normal emission static visibility irradiance"
+#define GI_DIRECTION_WORDS "+x -x +y -y +z -z"
+
+// What the level says of GI (world/components.h, GI_COLUMNS; meaning there) and a setting "gi.NAME"
+// can overrule: B(name) switch, E(name, words, how many), U(name, min, max) whole number, F(name,
+// min, max). A setting's first word "level", or a number below its range (0 or -1), leaves it to
+// the level.
+#define GI_PARAMS(B, E, U, F)                                                                      \
+    B(enabled)                                                                                     \
+    E(grid, "32 64 128 256 512", 5)                                                                \
+    U(cascades, 1, 3)                                                                              \
+    E(format, "half byte", 2)                                                                      \
+    F(byte_radiance, 0.01, 1e5)                                                                    \
+    E(voxeliser, "auto raster compute", 3)                                                         \
+    B(solid)                                                                                       \
+    E(policy, "on_change every_frame every_n never", 4)                                            \
+    U(every_n, 1, 3600)                                                                            \
+    E(cosine, "average weighted", 2)                                                               \
+    F(hit, 0, 1)                                                                                   \
+    E(faces, "shared apart", 2)                                                                    \
+    E(filter, "directional isotropic", 2)                                                          \
+    U(bounces, 1, 2)                                                                               \
+    B(feedback)                                                                                    \
+    E(diffuse, "none cones probes voxels", 4)                                                      \
+    B(specular)                                                                                    \
+    B(ao)                                                                                          \
+    B(cone_shadows)                                                                                \
+    E(resolution, "full half quarter", 3)                                                          \
+    B(dither)                                                                                      \
+    E(mips, "linear nearest", 2)                                                                   \
+    U(share, 1, 64)                                                                                \
+    F(probe_spacing, 0.05, 100)                                                                    \
+    F(strength, 0, 100)                                                                            \
+    F(ao_lambda, 0, 100)                                                                           \
+    F(ao_floor, 0, 1)                                                                              \
+    F(step_factor, 0.1, 2.5)                                                                       \
+    F(diffuse_aperture, 10, 120)                                                                   \
+    F(specular_aperture, 1, 90)                                                                    \
+    F(distance, 0, 1e5)                                                                            \
+    F(offset, 0, 4)                                                                                \
+    F(sky, 0, 100)                                                                                 \
+    F(ambient, 0, 100)
+// What holds for a packet: the settings' word, else the level's.
+typedef struct GiParams {
+#define GI_FIELD_U32(name, ...) u32 name;
+#define GI_FIELD_F32(name, ...) f32 name;
+    GI_PARAMS(GI_FIELD_U32, GI_FIELD_U32, GI_FIELD_U32, GI_FIELD_F32)
+#undef GI_FIELD_U32
+#undef GI_FIELD_F32
+} GiParams;
+
 // What belongs together, for lists and the panel: X(id, title).
 #define SETTING_GROUPS(X)                                                                          \
     X(PICTURE, "picture")                                                                          \
     X(MANAGER, "light manager")                                                                    \
     X(GRID, "light lists")                                                                         \
     X(VOLUMES, "deferred volumes")                                                                 \
+    X(GI, "global illumination")                                                                   \
     X(LOOKUPS, "look-ups")                                                                         \
     X(POST, "post chain")
 typedef enum SettingGroup {
@@ -169,6 +268,13 @@ extern const char *const setting_group_titles[SETTING_GROUP_COUNT];
     S(F32, light_gain, PICTURE, 1.0f, 0.0f, 1000.0f, "", "factor on all lights (not on ambient)")  \
     S(U32, light_limit, PICTURE, 0, 0, 1000000, "",                                                \
       "only the first N point and spot lights; 0 = all")
+// The same of global illumination; the key is "gi." and the name, the field gi_ and the name.
+#define GI_SETTINGS(S)                                                                             \
+    S(ENUM, show, GI, GI_SHOW_RADIANCE, 0, GI_SHOW_COUNT - 1, GI_SHOW_WORDS,                       \
+      "view gi_voxels: what of the voxels is shown")                                               \
+    S(U32, show_level, GI, 0, 0, 9, "", "view gi_voxels: level of filtered radiance; 0 = none")    \
+    S(ENUM, show_direction, GI, 0, 0, 5, GI_DIRECTION_WORDS,                                       \
+      "view gi_voxels: direction of filtered radiance")
 
 #define SETTING_FIELD_F32(name)  f32 name;
 #define SETTING_FIELD_BOOL(name) u32 name;
@@ -178,6 +284,14 @@ typedef struct RenderSettings {
 #define S(type, name, ...) SETTING_FIELD_##type(name)
     RENDER_SETTINGS(S)
 #undef S
+#define S(type, name, ...) SETTING_FIELD_##type(gi_##name)
+    GI_SETTINGS(S)
+#undef S
+#define GI_FIELD_U32(name, ...) u32 gi_##name;
+#define GI_FIELD_F32(name, ...) f32 gi_##name;
+    GI_PARAMS(GI_FIELD_U32, GI_FIELD_U32, GI_FIELD_U32, GI_FIELD_F32)
+#undef GI_FIELD_U32
+#undef GI_FIELD_F32
 } RenderSettings;
 
 typedef enum SettingType { SETTING_F32, SETTING_BOOL, SETTING_ENUM, SETTING_U32 } SettingType;
@@ -215,6 +329,14 @@ bool settings_set(RenderSettings *settings, const char *key_equals_value);
 // Several, separated by commas; a word alone is a path: "deferred,layout=packed". On a mistake:
 // LOG RENDER_SETTING, false, settings unchanged.
 bool settings_set_list(RenderSettings *settings, const char *list);
+// A preset: settings by a name (--preset NAME). False with LOG RENDER_SETTING and a suggestion if
+// there is none. What a preset does not name stays as it is.
+typedef struct SettingPreset {
+    const char *name, *list, *help; // list: as settings_set_list reads it
+} SettingPreset;
+extern const SettingPreset setting_presets[];
+extern const u32 setting_preset_count;
+bool settings_set_preset(RenderSettings *settings, const char *name);
 // Does the setting change what is drawn, or how, with the others as they are (say, the path)?
 bool setting_has_effect(const RenderSettings *settings, const SettingDesc *desc);
 // Brings every value into its range (what comes from a file is not trusted).

@@ -67,6 +67,10 @@ const GpuUsageInfo gpu_usage_table[GPU_USAGE_COUNT] = {
                                    VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT |
                                    VK_ACCESS_2_INDEX_READ_BIT,
                                VK_IMAGE_LAYOUT_UNDEFINED, false},
+    [GPU_USAGE_STORAGE_DRAW] = {"storage of drawing", SHADER_STAGES,
+                                VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+                                    VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                                VK_IMAGE_LAYOUT_GENERAL, true},
     [GPU_USAGE_INDIRECT] = {"indirect", VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                             VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                             false},

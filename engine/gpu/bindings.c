@@ -183,7 +183,11 @@ static void set_write(Gpu *gpu, const GpuBindGroupDesc *desc, const GpuBindLayou
         }
         const GpuTextureItem *texture = gpu_texture_get(gpu, binding->texture);
         if (layout->kinds[i] == GPU_BINDING_STORAGE_TEXTURE) {
-            images[i] = (VkDescriptorImageInfo){VK_NULL_HANDLE, texture->target_view,
+            LUZ_ASSERT(binding->mip == 0 ||
+                       (binding->mip < GPU_MIP_VIEWS_CAP && texture->mip_views[binding->mip]));
+            images[i] = (VkDescriptorImageInfo){VK_NULL_HANDLE,
+                                                binding->mip ? texture->mip_views[binding->mip]
+                                                             : texture->target_view,
                                                 VK_IMAGE_LAYOUT_GENERAL};
         } else {
             const GpuSamplerItem *sampler = gpu_pool_get(&gpu->samplers, binding->sampler.id);

@@ -196,6 +196,23 @@ void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuB
     cmd->gpu->vk.vkCmdCopyBuffer(cmd->buffer, source->buffer, target->buffer, 1, &region);
 }
 
+void gpu_cmd_fill_buffer(GpuCommands *cmd, GpuBuffer buffer, u64 offset, u64 size, u32 word) {
+    const GpuBufferItem *item = gpu_buffer_get(cmd->gpu, buffer);
+    LUZ_ASSERT(offset % 4 == 0 && size % 4 == 0);
+    LUZ_ASSERT(offset <= item->size && size <= item->size - offset);
+    if (size == 0) return;
+    cmd->gpu->vk.vkCmdFillBuffer(cmd->buffer, item->buffer,
+                                 gpu_buffer_offset(cmd->gpu, item) + offset, size, word);
+}
+
+void gpu_cmd_clear_texture(GpuCommands *cmd, GpuTexture texture) {
+    const GpuTextureItem *item = gpu_texture_get(cmd->gpu, texture);
+    LUZ_ASSERT(!gpu_format_is_depth(item->format));
+    cmd->gpu->vk.vkCmdClearColorImage(
+        cmd->buffer, item->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &(VkClearColorValue){{0}},
+        1, &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1});
+}
+
 // --- Labels ---
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name) {

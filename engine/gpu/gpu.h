@@ -172,6 +172,7 @@ typedef struct GpuBinding {
     u64 offset;       // into the buffer, a multiple of 256
     GpuTexture texture;
     GpuSampler sampler;
+    u32 mip; // of a storage texture: the one that is seen
 } GpuBinding;
 typedef struct GpuBindGroupDesc {
     const char *label;
@@ -184,7 +185,13 @@ void gpu_destroy_bind_group(Gpu *gpu, GpuBindGroup group);
 
 // --- Pipelines ---
 
-typedef enum GpuBlend { GPU_BLEND_NONE, GPU_BLEND_ADD, GPU_BLEND_ALPHA } GpuBlend;
+// SCALE_ADD: what is there times the shader's alpha, plus its colour.
+typedef enum GpuBlend {
+    GPU_BLEND_NONE,
+    GPU_BLEND_ADD,
+    GPU_BLEND_ALPHA,
+    GPU_BLEND_SCALE_ADD
+} GpuBlend;
 typedef enum GpuDepth {
     GPU_DEPTH_NONE,
     GPU_DEPTH_WRITE, // GREATER_OR_EQUAL (reversed) and write
@@ -215,7 +222,7 @@ typedef enum GpuVertexLayout {
 } GpuVertexLayout;
 
 #define GPU_TARGETS_CAP   8
-#define GPU_SPEC_CAP      32
+#define GPU_SPEC_CAP      48
 #define GPU_GROUPS_CAP    4
 typedef struct GpuPipelineDesc {
     const char *label;
@@ -268,6 +275,7 @@ typedef enum GpuUsage {
     GPU_USAGE_STORAGE_COMPUTE,  // read and write
     GPU_USAGE_STORAGE_READ_COMPUTE,
     GPU_USAGE_READ_VERTEX,      // storage buffer read by vertex or fragment shaders
+    GPU_USAGE_STORAGE_DRAW,     // storage buffer read and written by vertex or fragment shaders
     GPU_USAGE_INDIRECT,
     GPU_USAGE_COPY_SOURCE,
     GPU_USAGE_COPY_TARGET,
@@ -324,6 +332,12 @@ void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuf
 // The source in GPU_USAGE_COPY_SOURCE; ranges must lie within the buffers.
 void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuBuffer to,
                          u64 to_offset, u64 size);
+
+// A range of a buffer in GPU_USAGE_COPY_TARGET gets one word everywhere; offset and size in bytes,
+// multiples of 4.
+void gpu_cmd_fill_buffer(GpuCommands *cmd, GpuBuffer buffer, u64 offset, u64 size, u32 word);
+// All mips of a texture (of numbers, not depth) in GPU_USAGE_COPY_TARGET become 0.
+void gpu_cmd_clear_texture(GpuCommands *cmd, GpuTexture texture);
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_label_end(GpuCommands *cmd);

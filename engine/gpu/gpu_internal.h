@@ -85,11 +85,13 @@ typedef struct GpuBufferItem {
     u64 upload_epoch;
     bool vertex, index, indirect;
 } GpuBufferItem;
+#define GPU_MIP_VIEWS_CAP 12
 typedef struct GpuTextureItem {
     GpuPoolItem pool;
     VkImage image;
     VkImageView view;        // all mips: sampling
     VkImageView target_view; // mip 0, all aspects: rendering and storage; equals view if it can
+    VkImageView mip_views[GPU_MIP_VIEWS_CAP]; // of storage textures: one mip each, from 1 on
     GpuAllocation allocation;
     GpuFormat format;
     u32 width, height, depth, mip_count, samples;

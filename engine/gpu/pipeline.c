@@ -176,16 +176,25 @@ static bool build_graphics(Gpu *gpu, const GpuPipelineItem *item,
     VkPipelineColorBlendAttachmentState blends[GPU_TARGETS_CAP];
     VkFormat formats[GPU_TARGETS_CAP];
     for (u32 i = 0; i < desc->target_count; i++) {
-        bool is_alpha = desc->blend == GPU_BLEND_ALPHA;
+        static const struct {
+            VkBlendFactor source, there, there_alpha;
+        } factors[] = {
+            [GPU_BLEND_NONE] = {VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_ZERO},
+            [GPU_BLEND_ADD] = {VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE},
+            [GPU_BLEND_ALPHA] = {VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+                                 VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA},
+            [GPU_BLEND_SCALE_ADD] = {VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_SRC_ALPHA,
+                                     VK_BLEND_FACTOR_ONE},
+        };
         formats[i] = gpu_format_vk(gpu, desc->targets[i]);
         blends[i] = (VkPipelineColorBlendAttachmentState){
             .blendEnable = desc->blend != GPU_BLEND_NONE,
-            .srcColorBlendFactor = is_alpha ? VK_BLEND_FACTOR_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
-            .dstColorBlendFactor =
-                is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
-            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-            .dstAlphaBlendFactor =
-                is_alpha ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE,
+            .srcColorBlendFactor = factors[desc->blend].source,
+            .dstColorBlendFactor = factors[desc->blend].there,
+            // What SCALE_ADD says of opacity is a factor, not an opacity to add.
+            .srcAlphaBlendFactor =
+                desc->blend == GPU_BLEND_SCALE_ADD ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE,
+            .dstAlphaBlendFactor = factors[desc->blend].there_alpha,
             .colorWriteMask = marks ? 0 : 0xF,
         };
     }

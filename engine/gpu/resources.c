@@ -139,14 +139,14 @@ u64 gpu_buffer_size(const Gpu *gpu, GpuBuffer buffer) { return gpu_buffer_get(gp
 
 // --- Textures ---
 
-static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 mip_count,
+static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 first_mip, u32 mip_count,
                          VkImageAspectFlags aspects, VkImageView *view) {
     VkImageViewCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = item->image,
         .viewType = item->depth > 1 ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
         .format = gpu_format_vk(gpu, item->format),
-        .subresourceRange = {aspects, 0, mip_count, 0, 1},
+        .subresourceRange = {aspects, first_mip, mip_count, 0, 1},
     };
     if (!GPU_CHECK(gpu, item->pool.label,
                    gpu->vk.vkCreateImageView(gpu->device, &info, NULL, view))) {
@@ -156,6 +156,15 @@ static bool texture_view(Gpu *gpu, const GpuTextureItem *item, u32 mip_count,
     gpu_name_object(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(*view), "%s view of %u mips",
                     item->pool.label, mip_count);
     return true;
+}
+
+// Each mip from 1 on as a storage texture of its own.
+static bool texture_mip_views(Gpu *gpu, GpuTextureItem *item) {
+    bool ok = true;
+    for (u32 mip = 1; mip < MIN(item->mip_count, GPU_MIP_VIEWS_CAP); mip++)
+        ok = ok && texture_view(gpu, item, mip, 1, gpu_format_aspects(item->format),
+                                &item->mip_views[mip]);
+    return ok;
 }
 
 static bool texture_create_image(Gpu *gpu, GpuTextureItem *item, u32 heap,
@@ -182,9 +191,11 @@ static bool texture_create_image(Gpu *gpu, GpuTextureItem *item, u32 heap,
                      gpu->vk.vkBindImageMemory(gpu->device, item->image,
                                                item->allocation.block->memory,
                                                item->allocation.offset)) &&
-           texture_view(gpu, item, item->mip_count, gpu_format_aspect(item->format), &item->view) &&
+           texture_view(gpu, item, 0, item->mip_count, gpu_format_aspect(item->format),
+                        &item->view) &&
+           (!(info->usage & VK_IMAGE_USAGE_STORAGE_BIT) || texture_mip_views(gpu, item)) &&
            ((item->mip_count == 1 && !gpu_format_has_stencil(item->format)) ||
-            texture_view(gpu, item, 1, gpu_format_aspects(item->format), &item->target_view));
+            texture_view(gpu, item, 0, 1, gpu_format_aspects(item->format), &item->target_view));
 }
 
 GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc) {
@@ -247,6 +258,9 @@ void gpu_destroy_texture(Gpu *gpu, GpuTexture texture) {
     GpuTextureItem *item = gpu_texture_get(gpu, texture);
     if (item->target_view != item->view)
         gpu_destroy_later(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(item->target_view));
+    for (u32 mip = 1; mip < GPU_MIP_VIEWS_CAP; mip++)
+        if (item->mip_views[mip])
+            gpu_destroy_later(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(item->mip_views[mip]));
     gpu_destroy_later(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, GPU_HANDLE(item->view));
     gpu_destroy_later(gpu, VK_OBJECT_TYPE_IMAGE, GPU_HANDLE(item->image));
     gpu_destroy_later_memory(gpu, item->allocation);

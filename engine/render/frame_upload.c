@@ -13,7 +13,7 @@ static const char *const target_labels[RESOURCE_COUNT] = {
     RENDER_RESOURCES(X)
 #undef X
 };
-static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame",
+static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame", "gi",
 #define X(id, section, ...) #section,
                                                               FRAME_BUFFERS(X)
 #undef X
@@ -95,7 +95,7 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
     renderer->gbuffer_width_px = ok ? packet->width_px : 0;
     renderer->gbuffer_height_px = ok ? packet->height_px : 0;
     if (renderer->width_px != packet->width_px || renderer->height_px != packet->height_px) {
-        for (u32 id = 0; id < RESOURCE_FIRST_BUFFER; id++)
+        for (u32 id = 0; id < RESOURCE_FIRST_GI; id++)
             if (id != RESOURCE_SHADOW_MAP && !is_ms(id) &&
                 !(id >= RESOURCE_GBUFFER_0 && id <= RESOURCE_DEPTH))
                 ok = ok && target_create(renderer, id, packet->width_px, packet->height_px);
@@ -237,7 +237,8 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
     if (!targets_resize(renderer, packet) || !device_lists_resize(renderer, packet) ||
         !lookups_update(renderer, packet))
         return false;
-    if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0))
+    if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0) ||
+        !buffer_fill(renderer, FRAME_BUFFER_GI, &packet->gi.record, sizeof packet->gi.record, 0))
         return false;
 #define X(id, section, Type, min_count)                                                            \
     if (!buffer_fill(renderer, FRAME_BUFFER_##id, PACKET_DATA(packet, section, Type),              \

@@ -55,10 +55,23 @@ extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, clu
 #define CLUSTER_LIST_PASSES                                                                        \
     &cluster_keys_pass, &cluster_scan_pass, &cluster_places_pass, &cluster_count_pass,             \
         &cluster_list_scan_pass, &cluster_fill_pass, &cluster_report_pass
-// What a pass reads that shades by lists: USE_LISTS(READ_VERTEX) or USE_LISTS(STORAGE_READ_COMPUTE).
+// What a pass reads that shades by lists: USE_LISTS(READ_VERTEX) or
+// USE_LISTS(STORAGE_READ_COMPUTE).
 #define USE_LISTS(use_)                                                                            \
     USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_),                     \
         USE(CLUSTERS, use_), USE(TILE_DEPTHS, use_)
+// gi_voxelise.c, gi_light.c, gi_filter.c, gi_probes.c: the voxels, from the shadow map on
+extern const Pass gi_static_pass, gi_dynamic_pass, gi_light_pass, gi_filter_pass, gi_bounce_pass,
+    gi_refilter_pass, gi_irradiance_pass, gi_probes_pass;
+#define GI_VOXEL_PASSES                                                                            \
+    &gi_static_pass, &gi_dynamic_pass, &gi_light_pass, &gi_filter_pass, &gi_bounce_pass,           \
+        &gi_refilter_pass, &gi_irradiance_pass, &gi_probes_pass
+// gi_screen.c: from lit surfaces to such with indirect light. Forward paths have no G-buffer of
+// their own: gi_gbuffer_pass draws one.
+extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_compose_pass;
+#define GI_SCREEN_PASSES &gi_traced_pass, &gi_trace_pass, &gi_compose_pass
+// gi_views.c
+extern const Pass gi_view_pass;
 // post.c
 extern const Pass post_pass, debug_pass;
 // debug_views.c

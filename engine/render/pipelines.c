@@ -15,7 +15,7 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 
 // Which specialisation constants matter to a kind; the others are zeroed in the key, so that two
 // settings share a pipeline that does not depend on them.
-#define SPEC_BIT(id) (1u << (id))
+#define SPEC_BIT(id) (1ull << (id))
 #define SPEC_PALETTE (SPEC_BIT(SPEC_PALETTE_TEXTURE))
 #define SPEC_LIGHTING                                                                              \
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_SHADOW) |               \
@@ -52,7 +52,7 @@ typedef struct PipelineRow {
     GpuCull cull;
     GpuBlend blend;
     GpuVertexLayout vertex_layout;
-    u32 spec_mask;
+    u64 spec_mask;
 } PipelineRow;
 
 static const PipelineRow rows[PIPELINE_COUNT] = {

@@ -107,12 +107,34 @@ typedef struct RendererStats {
     // memory ran out, the longest list, occupied clusters (device lists only). Of lists made on
     // the device, what the newest finished frame reported.
     u32 list_indices, list_fallbacks, list_longest, clusters;
+    // GI: how often each was done since the renderer was made; bytes on the device.
+    u32 gi_static_voxelised, gi_dynamic_voxelised, gi_relit, gi_probes_traced;
+    u32 gi_voxels, gi_dynamic_voxels, gi_lost_voxels; // of the newest finished frame that counted
+    u64 gi_bytes;
 } RendererStats;
 RendererStats renderer_stats(const Renderer *renderer);
 
 // For tests: lists made on the device get at most this many entries (0 = what the device allows),
 // and the buffers are made anew; cells that find no room use all lights.
 void renderer_limit_lists(Renderer *renderer, u32 index_limit, u32 cluster_limit);
+// For tests and tools: what the voxel volumes hold after the last frame, which is done. x, y, z
+// count as in shaders/shared.h; 3D images come tightly packed, all mips.
+typedef enum GiVolume {
+    GI_VOLUME_MASKS,
+    GI_VOLUME_RANKS,
+    GI_VOLUME_VOXELS,
+    GI_VOLUME_ATTRIBUTES,
+    GI_VOLUME_RADIANCE,
+    GI_VOLUME_COUNTERS,
+    GI_VOLUME_BASE,
+    GI_VOLUME_ATLAS,
+    GI_VOLUME_IRRADIANCE,
+    GI_VOLUME_VISIBILITY,
+    GI_VOLUME_PROBES,
+    GI_VOLUME_COUNT
+} GiVolume;
+// Returns the bytes copied, at most `size`; 0 = not there.
+u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size);
 // For tests: what the device made in the last frame, which is done: CellRecord[], u32[],
 // TileDepthRecord[], u32[], u32[], u32[]. Returns the bytes copied, at most `size`; 0 = not there.
 typedef enum ListBuffer {

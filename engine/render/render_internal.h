@@ -26,17 +26,32 @@
     X(ACCUMULATION, "accumulation", GPU_FORMAT_RGBA32F)                                            \
     X(LDR, "ldr", GPU_FORMAT_RGBA8)                                                                \
     X(LDR_OTHER, "ldr other", GPU_FORMAT_RGBA8)                                                    \
+    X(GI_BASE, "gi base", GPU_FORMAT_NONE)                                                         \
+    X(GI_ATLAS, "gi atlas", GPU_FORMAT_NONE)                                                       \
+    X(GI_IRRADIANCE, "gi irradiance", GPU_FORMAT_RGBA16F)                                          \
+    X(GI_VISIBILITY, "gi visibility", GPU_FORMAT_R8)                                               \
+    X(GI_PROBES, "gi probes", GPU_FORMAT_RGBA16F)                                                  \
+    X(GI_TRACE_0, "gi trace 0", GPU_FORMAT_RGBA16F)                                                \
+    X(GI_TRACE_1, "gi trace 1", GPU_FORMAT_RGBA16F)                                                \
     X(LIST_CELLS, "list cells", GPU_FORMAT_NONE)                                                   \
     X(LIST_INDICES, "list indices", GPU_FORMAT_NONE)                                               \
     X(TILE_DEPTHS, "tile depths", GPU_FORMAT_NONE)                                                 \
     X(CLUSTERS, "clusters", GPU_FORMAT_NONE)                                                       \
     X(PIXEL_CLUSTERS, "pixel clusters", GPU_FORMAT_NONE)                                           \
-    X(GRID_COUNTERS, "grid counters", GPU_FORMAT_NONE)
+    X(GRID_COUNTERS, "grid counters", GPU_FORMAT_NONE)                                             \
+    X(GI_MASKS, "gi masks", GPU_FORMAT_NONE)                                                       \
+    X(GI_RANKS, "gi ranks", GPU_FORMAT_NONE)                                                       \
+    X(GI_VOXELS, "gi voxels", GPU_FORMAT_NONE)                                                     \
+    X(GI_ATTRIBUTES, "gi attributes", GPU_FORMAT_NONE)                                             \
+    X(GI_ACCUMULATORS, "gi accumulators", GPU_FORMAT_NONE)                                         \
+    X(GI_RADIANCE, "gi radiance", GPU_FORMAT_NONE)                                                 \
+    X(GI_COUNTERS, "gi counters", GPU_FORMAT_NONE)
 typedef enum RenderResource {
 #define X(id, ...) RESOURCE_##id,
     RENDER_RESOURCES(X)
 #undef X
         RESOURCE_COUNT,
+    RESOURCE_FIRST_GI = RESOURCE_GI_BASE, // volumes and traced pictures: sized by gi.c
     RESOURCE_FIRST_BUFFER = RESOURCE_LIST_CELLS
 } RenderResource;
 extern const GpuFormat resource_formats[RESOURCE_COUNT];
@@ -51,9 +66,14 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
     X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                                                    \
     X(CELLS, cells, CellRecord, 1)                                                                 \
     X(LIGHT_INDICES, light_indices, u32, 1)                                                        \
-    X(GRID_NODES, grid_nodes, GridNode, 1)
+    X(GRID_NODES, grid_nodes, GridNode, 1)                                                         \
+    X(GI_INSTANCES, gi_instances, InstanceRecord, 1)                                               \
+    X(GI_LIGHTS, gi_lights, GiLightRecord, 1)                                                      \
+    X(GI_LISTS, gi_lists, u32, 1)                                                                  \
+    X(TRACED_LIGHTS, traced_lights, TracedLightRecord, GI_TRACED_CAP)
 typedef enum FrameBuffer {
     FRAME_BUFFER_FRAME, // the FrameRecord itself
+    FRAME_BUFFER_GI,    // the GiRecord
 #define X(id, ...) FRAME_BUFFER_##id,
     FRAME_BUFFERS(X)
 #undef X
@@ -116,7 +136,28 @@ typedef enum PipelineKind {
     PIPELINE_LINES,
     PIPELINE_SPLIT_COPY,
     PIPELINE_SPLIT,
-    PIPELINE_COUNT
+    // Global illumination; those that make the voxels come first and have a group of their own.
+    PIPELINE_GI_VOXELISE_RASTER, // step: 0 marks voxels, 1 adds up what falls into them
+    PIPELINE_GI_VOXELISE_COMPUTE,
+    PIPELINE_GI_SOLID,
+    PIPELINE_GI_RANK,    // step: of the scan that counts set bits
+    PIPELINE_GI_LIST,    // places of the voxels by slot
+    PIPELINE_GI_RESOLVE, // sums to attributes
+    PIPELINE_GI_CLEAR,   // what dynamic voxels leave behind
+    PIPELINE_GI_LIGHT,
+    PIPELINE_GI_FILTER_BASE, // level 0 of the atlas
+    PIPELINE_GI_FILTER_MIP,
+    PIPELINE_GI_BOUNCE,
+    PIPELINE_GI_IRRADIANCE, // of voxels, for diffuse = voxels
+    PIPELINE_GI_PROBES,
+    PIPELINE_GI_TRACED_LIGHTS, // from here on: passes over the screen
+    PIPELINE_GI_TRACE,
+    PIPELINE_GI_COMPOSE,
+    PIPELINE_GI_VIEW_VOXELS,
+    PIPELINE_GI_VIEW_PROBES,
+    PIPELINE_COUNT,
+    PIPELINE_FIRST_GI_BUILD = PIPELINE_GI_VOXELISE_RASTER,
+    PIPELINE_FIRST_GI_SCREEN = PIPELINE_GI_TRACED_LIGHTS
 } PipelineKind;
 typedef struct PipelineKey {
     u32 kind, double_sided;
@@ -145,7 +186,7 @@ typedef struct ResourceUse {
     GpuUsage usage;
     bool discard; // old contents are not needed
 } ResourceUse;
-#define PASS_USES_CAP 16
+#define PASS_USES_CAP 24
 typedef struct Pass {
     const char *name;
     ResourceUse uses[PASS_USES_CAP];
@@ -155,7 +196,7 @@ typedef struct Pass {
     // Instead of all that: runs other passes, as many as the packet asks for (the post chain).
     void (*expand)(const PassContext *context);
 } Pass;
-#define PATH_PASSES_CAP 24
+#define PATH_PASSES_CAP 48
 typedef struct PathRow {
     const char *name;
     const Pass *passes[PATH_PASSES_CAP]; // ends with NULL
@@ -232,6 +273,28 @@ typedef struct DeviceLists {
     u32 counters[GRID_COUNTER_COUNT]; // of the newest report
 } DeviceLists;
 
+// The voxels and what was made of them (gi.c). Contents hang on keys of the packet: see PacketGi.
+#define GI_ATLAS_LEVELS_CAP 10
+typedef struct GiState {
+    GpuBindLayout build_layout, screen_layout;
+    GpuSampler sampler_linear, sampler_nearest_mip;
+    GpuBindGroup build_groups[GI_ATLAS_LEVELS_CAP]; // by level: its mip source is the level before
+    GpuBindGroup screen_group;
+    u32 bindings_version; // of the bindings in the groups
+    // Shape of the volumes that are there.
+    u32 dims[4], format, faces, filter, slot_cap;
+    u32 atlas_levels;
+    u32 probes[3];
+    u32 trace_width_px, trace_height_px;
+    // What they hold: keys of the packet that they were made from, 0 = nothing.
+    u64 static_key, dynamic_key, light_key;
+    u32 dynamic_tick,
+        probe_tick;   // of the packet that was voxelised, whose probes were traced, last
+    bool has_dynamic; // dynamic voxels are in the masks
+    // What this packet asks for, decided once (gi_begin): see the passes' needed functions.
+    bool voxelise_static, voxelise_dynamic, relight, trace_probes;
+} GiState;
+
 struct Renderer {
     Gpu *gpu;
     Arena arena; // level lifetime: mesh and texture tables
@@ -288,6 +351,7 @@ struct Renderer {
     u32 line_vertex_count;
 
     DeviceLists lists;
+    GiState gi;
     RendererStats stats;
 };
 
@@ -337,6 +401,22 @@ f32 note_width(f32 size_px, const char *text);
 // debug_views.c: lines, marks and legend of the packet's debug view, if it has any.
 bool debug_view_upload(Renderer *renderer, const Packet *packet);
 void debug_view_record(const PassContext *context);
+
+// gi.c: volumes, buffers and groups as this packet wants them, and what is to be done in it. False:
+// out of memory (LOG); the packet is then drawn without GI.
+bool gi_create(Renderer *renderer);
+void gi_destroy(Renderer *renderer);
+bool gi_begin(Renderer *renderer, const Packet *packet);
+// Does this packet have GI, and did gi_begin find room for it?
+bool gi_is_on(const PassContext *c);
+// Binds a pipeline that makes voxels with its groups; level: of the atlas, for the filter.
+void gi_bind_build(const PassContext *c, GpuPipeline pipeline, u32 level);
+// Binds a pipeline that reads voxels for the screen: the frame's group, and GI's as set 2.
+void gi_bind_screen(const PassContext *c, GpuPipeline pipeline);
+// Makes what one dispatch of a pass wrote visible to the next; for resources in STORAGE_COMPUTE.
+void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count);
+// Bytes of all that GI keeps on the device.
+u64 gi_memory(const Renderer *renderer);
 
 // lookups.c: the textures that this packet's settings ask for, holding what it needs.
 bool lookups_update(Renderer *renderer, const Packet *packet);

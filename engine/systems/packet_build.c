@@ -339,7 +339,7 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     COPY(lights, LightRecord, lights->lights);
     COPY(spots, SpotRecord, lights->spots);
     COPY(directionals, DirectionalRecord, lights->directionals);
-    COPY(gi_lights, LightRecord, lights->gi_lights);
+    COPY(gi_lights, GiLightRecord, lights->gi_lights);
     COPY(light_marks, PacketLightMark, lights->marks);
     COPY(posts, PacketPost, parts->posts.posts);
 #undef COPY

@@ -233,6 +233,24 @@ static SpotRecord make_spot(Vec3 direction, f32 inner_deg, f32 outer_deg) {
                         {1.0f / MAX(inner - outer, 1e-4f), 0.0f, 0.0f, 0.0f}};
 }
 
+// A light as voxels see it: full brightness, wherever the view is.
+static GiLightRecord gi_record(const LightCull *cull, u32 row) {
+    const LightTable *light = cull->light;
+    LightRecord record = row_record(cull, row, 1.0f, 1.0f);
+    bool is_spot = light->kind[row] == LIGHT_SPOT;
+    u32 shadow = light->voxel_shadow[row]; // auto = none: only directional lights have maps
+    GiLightRecord out = {.direction = {0, 0, -1, -2}, .extra = {0, is_spot ? 1.0f : 0.0f, 0, 0}};
+    memcpy(out.position, record.position, sizeof out.position);
+    memcpy(out.color, record.color, sizeof out.color);
+    out.color[3] = shadow > 0 ? (f32)(shadow - 1) : (f32)VOXEL_SHADOW_NONE;
+    if (!is_spot) return out;
+    SpotRecord spot = make_spot(vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]),
+                                light->inner_angle[row], light->outer_angle[row]);
+    memcpy(out.direction, spot.direction, sizeof out.direction);
+    out.extra[0] = spot.edge[0];
+    return out;
+}
+
 static SpotRecord shown_spot(const LightCull *cull, const ShownLight *shown) {
     const LightTable *light = cull->light;
     u32 row = shown->row;
@@ -344,10 +362,10 @@ static void collect_gi(LightCull *cull, LightParts *parts, Arena *scratch) {
     u32 count = light->table.count;
     for (u32 row = 0; row < count; row++)
         parts->gi_count += radius[row] >= 0.0f && light->affects_gi[row];
-    parts->gi_lights = ARENA_PUSH(scratch, LightRecord, parts->gi_count);
+    parts->gi_lights = ARENA_PUSH(scratch, GiLightRecord, parts->gi_count);
     for (u32 row = 0, i = 0; i < parts->gi_count; row++)
         if (radius[row] >= 0.0f && light->affects_gi[row])
-            parts->gi_lights[i++] = row_record(cull, row, 1.0f, 1.0f);
+            parts->gi_lights[i++] = gi_record(cull, row);
 }
 
 // The first that casts a shadow comes first, the others in row order.

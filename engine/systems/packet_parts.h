@@ -39,7 +39,7 @@ typedef struct LightParts {
     LightRecord *lights; // [point_count + spot_count + 1]: points, spots, the dummy
     SpotRecord *spots;   // [spot_count]
     u32 point_highlights, spot_highlights; // the first so many of each have a highlight
-    LightRecord *gi_lights;                // [gi_count]
+    GiLightRecord *gi_lights;              // [gi_count]
     u32 gi_count;
     DirectionalRecord directionals[DIRECTIONALS_CAP];
     u32 directional_count;

@@ -74,6 +74,12 @@ extern "C" {
     C(BOOL, affects_gi, "", 1, "affects_gi", 0, 1, "lights the voxels")                           \
     C(F32, priority, "", 1, "priority", 0, 100,                                                   \
       "weight under a light budget; 100 = pinned: never merged, dropped or faded")                \
+    C(ENUM, voxel_shadow, "auto none shadow_map ray soft_ray", 0, "voxel_shadow", 0, 4,           \
+      "how voxels ask whether they see it (auto: its shadow map, else none)")                     \
+    C(ENUM, screen_shadow, "map cone volume", 0, "screen_shadow", 0, 2,                           \
+      "shadow on surfaces: its shadow map, a cone through the voxels, or what the voxels see")    \
+    C(F32, shadow_aperture, "deg", 5, "shadow_aperture", 0.1, 90, "cone: full opening angle")     \
+    C(F32, shadow_softness, "", 1, "shadow_softness", 0, 100, "cone: factor on what it meets")    \
     COLUMNS_DERIVED3_(C, x, y, z, "m", "transform: world position")                               \
     COLUMNS_DERIVED3_(C, dir_x, dir_y, dir_z, "", "transform: unit direction it shines, world")   \
     C(F32, reach, "m", 0, "", 0, 0, "transform: range in use")                                    \
@@ -177,6 +183,47 @@ extern "C" {
     C(F32, vertex_lighting, "m", 0, "vertex_lighting", 0, 1e5,                                    \
       "forward paths: surfaces beyond are lit per vertex; 0 = never")
 
+// Global illumination from voxels (specification of voxel GI; what each does: frame/settings.h, whose
+// settings of the same names can overrule these while running).
+#define GI_COLUMNS(C)                                                                             \
+    C(BOOL, enabled, "", 1, "enabled", 0, 1, "light bounces")                                     \
+    COLUMNS_VEC3_(C, size_x, size_y, size_z, "m", 0, "size", 0, 1e5, "box that is voxelised; 0 = all") \
+    COLUMNS_VEC3_(C, center_x, center_y, center_z, "m", 0, "center", -1e5, 1e5, "its middle, if it has a size") \
+    C(ENUM, grid, "32 64 128 256 512", 1, "grid", 0, 4, "voxels along the longest side")          \
+    C(U32, cascades, "", 1, "cascades", 1, 3, "nested grids about the camera, each of twice the reach") \
+    C(ENUM, format, "half byte", 0, "format", 0, 1, "numbers that radiance is kept in")           \
+    C(F32, byte_radiance, "", 4, "byte_radiance", 0.01, 1e5, "format byte: radiance beyond is cut") \
+    C(ENUM, voxeliser, "auto raster compute", 0, "voxeliser", 0, 2, "how triangles become voxels") \
+    C(BOOL, solid, "", 0, "solid", 0, 1, "closed meshes are filled")                              \
+    C(ENUM, policy, "on_change every_frame every_n never", 0, "policy", 0, 3,                     \
+      "when moving things are voxelised again")                                                   \
+    C(U32, every_n, "ticks", 4, "every_n", 1, 3600, "policy every_n: once in so many ticks")      \
+    C(ENUM, cosine, "average weighted", 1, "cosine", 0, 1, "how a voxel's surface faces a light") \
+    C(F32, hit, "", 1, "hit", 0, 1, "soft rays: what a voxel in the way takes; 1 = all")          \
+    C(ENUM, faces, "shared apart", 0, "faces", 0, 1, "one radiance a voxel, or one a face")       \
+    C(ENUM, filter, "directional isotropic", 0, "filter", 0, 1, "how coarser levels are made")    \
+    C(U32, bounces, "", 2, "bounces", 1, 2, "1 = light, surface, eye; 2 = one surface more")      \
+    C(BOOL, feedback, "", 0, "feedback", 0, 1, "more bounces, one a frame")                       \
+    C(ENUM, diffuse, "none cones probes voxels", 1, "diffuse", 0, 3, "where indirect diffuse comes from") \
+    C(BOOL, specular, "", 1, "specular", 0, 1, "a cone along the mirrored view")                  \
+    C(BOOL, ao, "", 1, "ao", 0, 1, "ambient occlusion by the diffuse cones")                      \
+    C(BOOL, cone_shadows, "", 1, "cone_shadows", 0, 1, "lights with screen_shadow cone or volume have it") \
+    C(ENUM, resolution, "full half quarter", 0, "resolution", 0, 2, "of the traced picture")      \
+    C(BOOL, dither, "", 0, "dither", 0, 1, "cones start at different lengths, against bands")     \
+    C(ENUM, mips, "linear nearest", 0, "mips", 0, 1, "cones blend two levels, or take the nearer") \
+    C(U32, share, "", 1, "share", 1, 64, "probes: one in so many is traced anew each tick")       \
+    C(F32, probe_spacing, "m", 1, "probe_spacing", 0.05, 100, "probes: distance to the next")     \
+    C(F32, strength, "", 1, "strength", 0, 100, "factor on indirect light")                       \
+    C(F32, ao_lambda, "1/m", 1, "ao_lambda", 0, 100, "how fast occluders lose weight with distance") \
+    C(F32, ao_floor, "", 0, "ao_floor", 0, 1, "what is left in the darkest corner")               \
+    C(F32, step_factor, "", 0.5, "step_factor", 0.1, 2.5, "step of a cone / its diameter there")  \
+    C(F32, diffuse_aperture, "deg", 60, "diffuse_aperture", 10, 120, "full opening angle of the diffuse cones") \
+    C(F32, specular_aperture, "deg", 1, "specular_aperture", 1, 90, "smallest opening angle of specular cones") \
+    C(F32, distance, "m", 0, "distance", 0, 1e5, "reach of cones; 0 = through the whole grid")    \
+    C(F32, offset, "", 1, "offset", 0, 4, "voxels from a surface to the start of its cones")      \
+    C(F32, sky, "", 0, "sky", 0, 100, "factor on the sky that cones reach")                       \
+    C(F32, ambient, "", 0, "ambient", 0, 100, "factor on the constant ambient light, which GI replaces")
+
 // Something large that hides what is behind it, for the light manager's culling.
 #define OCCLUDER_COLUMNS(C)                                                                       \
     C(ENUM, shape, "box mesh", 0, "shape", 0, 1, "a box about the entity, or its instance's triangles") \
@@ -216,6 +263,7 @@ extern "C" {
     X(Material, material, MATERIAL_COLUMNS, false, "a surface")                                   \
     X(Environment, environment, ENVIRONMENT_COLUMNS, true, "the level as a whole")                \
     X(LightManager, light_manager, LIGHT_MANAGER_COLUMNS, true, "how lights are simplified")      \
+    X(Gi, gi, GI_COLUMNS, true, "global illumination")                                            \
     X(Occluder, occluder, OCCLUDER_COLUMNS, false, "hides lights behind it")                      \
     X(Post, post, POST_COLUMNS, false, "a step of the post chain")
 
@@ -233,6 +281,17 @@ ENGINE_COMPONENTS(X)
 #undef X
 
 typedef enum LightKind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DIRECTIONAL } LightKind;
+typedef enum VoxelShadow { // the column's words after auto
+    VOXEL_SHADOW_NONE,
+    VOXEL_SHADOW_MAP,
+    VOXEL_SHADOW_RAY,
+    VOXEL_SHADOW_SOFT_RAY
+} VoxelShadow;
+typedef enum ScreenShadow {
+    SCREEN_SHADOW_MAP,
+    SCREEN_SHADOW_CONE,
+    SCREEN_SHADOW_VOLUME
+} ScreenShadow;
 typedef enum VoxelMode { VOXEL_NONE, VOXEL_STATIC, VOXEL_DYNAMIC } VoxelMode;
 typedef enum CollisionMode { COLLISION_NONE, COLLISION_MESH, COLLISION_BOX } CollisionMode;
 typedef enum Brdf { BRDF_LAMBERT, BRDF_PHONG, BRDF_BLINN_PHONG, BRDF_BLINN_PHONG_NORMALIZED } Brdf;
