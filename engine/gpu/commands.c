@@ -185,6 +185,25 @@ void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuf
         cmd->buffer, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &region);
 }
 
+void gpu_cmd_copy_mips_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuffer buffer) {
+    const GpuTextureItem *from = gpu_texture_get(cmd->gpu, texture);
+    const GpuBufferItem *to = gpu_buffer_get(cmd->gpu, buffer);
+    LUZ_ASSERT(gpu_texture_bytes(from) <= to->size);
+    u64 offset = 0;
+    for (u32 mip = 0; mip < from->mip_count; mip++) {
+        VkExtent3D extent = {MAX(from->width >> mip, 1u), MAX(from->height >> mip, 1u),
+                             MAX(from->depth >> mip, 1u)};
+        VkBufferImageCopy region = {
+            .bufferOffset = gpu_buffer_offset(cmd->gpu, to) + offset,
+            .imageSubresource = {gpu_format_aspect(from->format), mip, 0, 1},
+            .imageExtent = extent,
+        };
+        cmd->gpu->vk.vkCmdCopyImageToBuffer(
+            cmd->buffer, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer, 1, &region);
+        offset += (u64)extent.width * extent.height * extent.depth * gpu_format_bytes(from->format);
+    }
+}
+
 void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuBuffer to,
                          u64 to_offset, u64 size) {
     const GpuBufferItem *source = gpu_buffer_get(cmd->gpu, from);

@@ -136,6 +136,7 @@ typedef struct GpuTextureDesc {
 } GpuTextureDesc;
 GpuTexture gpu_create_texture(Gpu *gpu, const GpuTextureDesc *desc);
 void gpu_destroy_texture(Gpu *gpu, GpuTexture texture);
+u64 gpu_texture_size(const Gpu *gpu, GpuTexture texture); // bytes of all mips, tightly packed
 // All mips tightly packed after each other. Leaves it readable by shaders.
 void gpu_upload_texture(Gpu *gpu, GpuTexture texture, const void *pixels, u64 size);
 
@@ -329,6 +330,8 @@ void gpu_cmd_dispatch(GpuCommands *cmd, u32 x, u32 y, u32 z);
 void gpu_cmd_dispatch_indirect(GpuCommands *cmd, GpuBuffer buffer, u64 offset);
 // Mip 0, tightly packed; texture in GPU_USAGE_COPY_SOURCE.
 void gpu_cmd_copy_texture_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuffer buffer);
+// All mips, from the finest, each tightly packed.
+void gpu_cmd_copy_mips_to_buffer(GpuCommands *cmd, GpuTexture texture, GpuBuffer buffer);
 // The source in GPU_USAGE_COPY_SOURCE; ranges must lie within the buffers.
 void gpu_cmd_copy_buffer(GpuCommands *cmd, GpuBuffer from, u64 from_offset, GpuBuffer to,
                          u64 to_offset, u64 size);

@@ -276,6 +276,10 @@ u64 gpu_texture_bytes(const GpuTextureItem *texture) {
     return total * texture->samples;
 }
 
+u64 gpu_texture_size(const Gpu *gpu, GpuTexture texture) {
+    return gpu_texture_bytes(gpu_texture_get((Gpu *)gpu, texture));
+}
+
 // --- Samplers ---
 
 GpuSampler gpu_create_sampler(Gpu *gpu, const GpuSamplerDesc *desc) {

@@ -246,8 +246,9 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
         return false;
     FRAME_BUFFERS(X)
 #undef X
+    gi_begin(renderer, packet);
     return debug_view_upload(renderer, packet) && text_upload(renderer, packet) &&
-           frame_group_update(renderer);
+           frame_group_update(renderer) && gi_update_groups(renderer);
 }
 
 static void exchange(void *a, void *b, u64 size) {
@@ -278,6 +279,15 @@ void frame_sets_exchange(Renderer *renderer) {
         EXCHANGE(renderer->targets[RESOURCE_GBUFFER_0 + i], parked->gbuffer[i]);
         EXCHANGE(renderer->usage[RESOURCE_GBUFFER_0 + i], parked->gbuffer_usage[i]);
     }
+    FIELD(gi);
+    for (u32 i = 0; i < GI_TEXTURES; i++) {
+        EXCHANGE(renderer->targets[RESOURCE_FIRST_GI + i], parked->gi_textures[i]);
+        EXCHANGE(renderer->usage[RESOURCE_FIRST_GI + i], parked->gi_texture_usage[i]);
+    }
+    for (u32 i = 0; i < GI_BUFFERS; i++) {
+        EXCHANGE(renderer->device_buffers[RESOURCE_FIRST_GI_BUFFER + i], parked->gi_buffers[i]);
+        EXCHANGE(renderer->usage[RESOURCE_FIRST_GI_BUFFER + i], parked->gi_buffer_usage[i]);
+    }
     EXCHANGE(renderer->targets[RESOURCE_LDR], renderer->targets[RESOURCE_LDR_OTHER]);
     EXCHANGE(renderer->usage[RESOURCE_LDR], renderer->usage[RESOURCE_LDR_OTHER]);
 #undef FIELD
@@ -286,6 +296,7 @@ void frame_sets_exchange(Renderer *renderer) {
 
 static void frame_set_destroy(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
+    gi_state_destroy(renderer);
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
     for (u32 i = 0; i < FRAME_BUFFER_COUNT; i++)
         if (renderer->buffers[i].id) gpu_destroy_buffer(gpu, renderer->buffers[i]);

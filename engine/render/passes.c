@@ -115,32 +115,39 @@ void begin(const PassContext *c, const GpuRendering *rendering) {
 
 const PathRow path_table[PATH_COUNT] = {
     [PATH_FORWARD] = {"forward",
-                      {&shadow_pass, &forward_pass, &over_pass, &samples_pass, &post_pass}},
+                      {&shadow_pass, GI_VOXEL_PASSES, &gi_gbuffer_pass, &forward_pass,
+                       GI_SCREEN_PASSES, &over_pass, &samples_pass, &post_pass}},
     [PATH_MULTIPASS] = {"multipass",
-                        {&shadow_pass, &prepass_pass, &multipass_base_pass, &multipass_pass,
-                         &resolve_pass, &over_pass, &post_pass}},
+                        {&shadow_pass, GI_VOXEL_PASSES, &gi_gbuffer_pass, &prepass_pass,
+                         &multipass_base_pass, &multipass_pass, &resolve_pass, GI_SCREEN_PASSES,
+                         &over_pass, &post_pass}},
     [PATH_DEFERRED] = {"deferred",
-                       {&shadow_pass, &gbuffer_pass, &deferred_pass, &resolve_pass, &over_pass,
-                        &post_pass}},
+                       {&shadow_pass, GI_VOXEL_PASSES, &gbuffer_pass, &deferred_pass, &resolve_pass,
+                        GI_SCREEN_PASSES, &over_pass, &post_pass}},
     [PATH_DEFERRED_VOLUMES] = {"deferred_volumes",
-                               {&shadow_pass, &gbuffer_pass, &base_pass, &volumes_pass,
-                                &volumes_stencil_pass, &resolve_pass, &over_pass, &post_pass}},
+                               {&shadow_pass, GI_VOXEL_PASSES, &gbuffer_pass, &base_pass,
+                                &volumes_pass, &volumes_stencil_pass, &resolve_pass,
+                                GI_SCREEN_PASSES, &over_pass, &post_pass}},
     [PATH_TILED_DEFERRED] = {"tiled_deferred",
-                             {&shadow_pass, &gbuffer_pass, TILE_LIST_PASSES, &tiled_pass,
-                              &over_pass, &post_pass}},
+                             {&shadow_pass, GI_VOXEL_PASSES, &gbuffer_pass, TILE_LIST_PASSES,
+                              &tiled_pass, GI_SCREEN_PASSES, &over_pass, &post_pass}},
     [PATH_TILED_FORWARD] = {"tiled_forward",
-                            {&shadow_pass, &prepass_pass, TILE_LIST_PASSES, &forward_lists_pass,
-                             &over_pass, &samples_pass, &post_pass}},
+                            {&shadow_pass, GI_VOXEL_PASSES, &gi_gbuffer_pass, &prepass_pass,
+                             TILE_LIST_PASSES, &forward_lists_pass, GI_SCREEN_PASSES, &over_pass,
+                             &samples_pass, &post_pass}},
     [PATH_CLUSTERED_DEFERRED] = {"clustered_deferred",
-                                 {&shadow_pass, &gbuffer_pass, CLUSTER_LIST_PASSES, &clustered_pass,
-                                  &over_pass, &post_pass}},
+                                 {&shadow_pass, GI_VOXEL_PASSES, &gbuffer_pass, CLUSTER_LIST_PASSES,
+                                  &clustered_pass, GI_SCREEN_PASSES, &over_pass, &post_pass}},
     [PATH_CLUSTERED_FORWARD] = {"clustered_forward",
-                                {&shadow_pass, &prepass_pass, CLUSTER_LIST_PASSES,
-                                 &forward_lists_pass, &over_pass, &samples_pass, &post_pass}},
+                                {&shadow_pass, GI_VOXEL_PASSES, &gi_gbuffer_pass, &prepass_pass,
+                                 CLUSTER_LIST_PASSES, &forward_lists_pass, GI_SCREEN_PASSES,
+                                 &over_pass, &samples_pass, &post_pass}},
 };
 static const PathRow debug_path = {
     "debug view",
     {&shadow_pass, &gbuffer_pass, TILE_LIST_PASSES, CLUSTER_LIST_PASSES, &debug_pass}};
+static const PathRow gi_view_path = {
+    "gi view", {&shadow_pass, GI_VOXEL_PASSES, &gbuffer_pass, &gi_trace_pass, &gi_view_pass}};
 static const PathRow overdraw_path = {"overdraw", {&overdraw_pass, &overdraw_show_pass}};
 
 const PathRow *path_of(const Packet *packet) {
@@ -155,6 +162,15 @@ const PathRow *path_of(const Packet *packet) {
     case VIEW_OVERDRAW:
     case VIEW_LAYERS:
         return &overdraw_path;
+    case VIEW_GI_VOXELS:
+    case VIEW_GI_INDIRECT:
+    case VIEW_GI_DIFFUSE:
+    case VIEW_GI_SPECULAR:
+    case VIEW_GI_AO:
+    case VIEW_GI_STEPS:
+    case VIEW_GI_PROBES:
+    case VIEW_GI_LEAKS:
+        return &gi_view_path;
     default:
         return &debug_path;
     }

@@ -367,13 +367,16 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
 
 static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
     const PipelineRow *row = &rows[key->kind];
+    bool is_gi_build = key->kind >= PIPELINE_FIRST_GI_BUILD && key->kind < PIPELINE_FIRST_GI_SCREEN;
+    bool is_gi_screen = key->kind >= PIPELINE_FIRST_GI_SCREEN;
     GpuPipelineDesc desc = {
         .label = row->label,
         .vertex = row->vertex,
         .fragment = row->fragment,
         .compute = row->compute,
-        .layouts = {renderer->frame_layout, renderer->material_layout},
-        .layout_count = 2,
+        .layouts = {is_gi_build ? renderer->gi_build_layout : renderer->frame_layout,
+                    renderer->material_layout, renderer->gi_screen_layout},
+        .layout_count = is_gi_build || !is_gi_screen ? 2 : 3,
         .push_size = PUSH_SIZE,
         .spec_count = SPEC_COUNT,
         .target_count = row->to_swapchain ? 1 : row->target_count,
@@ -421,6 +424,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
                          PipelineVariant variant) {
     u32 pixels_per_lane = tiled_pixels_per_lane(renderer, packet);
     const RenderSettings *settings = &packet->settings;
+    const GiParams *gi = &packet->gi.params;
     bool is_ms = rows[kind].may_be_ms && renderer->samples > 1;
     PipelineKey key = {.kind = kind,
                        .double_sided = variant.double_sided,
@@ -464,6 +468,19 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
                               : packet->lights.count <= LIGHT_BLOCK_CAP     ? 1
                               : packet->lights.count <= 2 * LIGHT_BLOCK_CAP ? 2
                                                                             : 0,
+        [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
+        [SPEC_GI_FACES] = gi->faces,
+        [SPEC_GI_NEAREST_MIPS] = gi->mips == GI_MIPS_NEAREST,
+        [SPEC_GI_CASCADES] = gi->cascades,
+        [SPEC_GI_DIFFUSE] = gi->diffuse,
+        [SPEC_GI_FEATURES] = (gi->specular ? GI_FEATURE_SPECULAR : 0) |
+                             (gi->ao ? GI_FEATURE_AO : 0) | (gi->dither ? GI_FEATURE_DITHER : 0),
+        [SPEC_GI_COSINE] = gi->cosine,
+        [SPEC_GI_STEP] = variant.post,
+        [SPEC_GI_VISIBILITY] = renderer->gi.voxel_shadows,
+        [SPEC_GI_FORMAT] = gi->format,
+        [SPEC_GI_RESOLUTION] = gi->resolution,
+        [SPEC_GI_TRACED] = renderer->gi.traced_shadows,
     };
     if (kind == PIPELINE_FORWARD_BLEND) {
         // Blended surfaces lie before those that the device made its lists for.

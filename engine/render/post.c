@@ -105,14 +105,13 @@ static void debug_record(const PassContext *c) {
     text_record(c, TEXT_PACKET);
     gpu_cmd_end_rendering(c->cmd);
 }
-const Pass debug_pass = {
-    "debug view",
-    {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
-     USE_LISTS(READ_VERTEX)},
-    12,
-    debug_record,
-    NULL,
-    NULL};
+const Pass debug_pass = {"debug view",
+                         {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
+                          USE(DEPTH, SAMPLED_FRAGMENT), USE_LISTS(READ_VERTEX)},
+                         12,
+                         debug_record,
+                         NULL,
+                         NULL};
 
 static void present_record(const PassContext *c) {
     u32 width, height;

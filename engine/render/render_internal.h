@@ -52,7 +52,8 @@ typedef enum RenderResource {
 #undef X
         RESOURCE_COUNT,
     RESOURCE_FIRST_GI = RESOURCE_GI_BASE, // volumes and traced pictures: sized by gi.c
-    RESOURCE_FIRST_BUFFER = RESOURCE_LIST_CELLS
+    RESOURCE_FIRST_BUFFER = RESOURCE_LIST_CELLS,
+    RESOURCE_FIRST_GI_BUFFER = RESOURCE_GI_MASKS // to the end
 } RenderResource;
 extern const GpuFormat resource_formats[RESOURCE_COUNT];
 
@@ -247,6 +248,38 @@ typedef struct Note {
 } Note;
 #define NOTES_CAP 64
 
+// The voxels and what was made of them (gi.c). Contents hang on keys of the packet: see PacketGi.
+#define GI_ATLAS_LEVELS_CAP 10
+#define GI_TEXTURES         (RESOURCE_FIRST_BUFFER - RESOURCE_FIRST_GI)
+#define GI_BUFFERS          (RESOURCE_COUNT - RESOURCE_FIRST_GI_BUFFER)
+typedef struct GiState {
+    GpuBindGroup build_groups[GI_ATLAS_LEVELS_CAP]; // by level: its mip source is the level before
+    GpuBindGroup screen_group;
+    u32 bindings_version; // of the bindings in the groups
+    // Shape of the volumes that are there.
+    u32 dims[4], format, faces, filter, solid, atlas[4]; // dims, atlas: as in GiRecord
+    u32 slot_cap;                                        // slots that the buffers by slot hold
+    u32 sizes[GI_TEXTURES][4]; // width, height, depth, mips of each texture
+    // What they hold: keys of the packet that they were made from, 0 = nothing.
+    u64 static_key, dynamic_key, light_key, probe_key;
+    u32 dynamic_tick; // of the packet whose dynamic instances were voxelised last
+    // Probes: whose turn it is (is_cold: everybody's), frames until all had theirs.
+    u32 probe_turn, probe_turns_left;
+    bool has_dynamic; // dynamic voxels are in the masks
+    bool has_lit;     // the volumes were lit since they are there
+    bool is_warm;     // every pass has run
+    // What this packet asks for, decided once (gi_begin): see the passes' needed functions.
+    bool is_on, is_cold; // is_cold: nothing that is spread over frames may be left over
+    bool voxelise_static, voxelise_dynamic, relight, trace_probes;
+    u32 voxel_shadows, traced_shadows; // bits: SPEC_GI_VISIBILITY, SPEC_GI_TRACED
+} GiState;
+// What frames report of the voxels: GI_COUNTER_COUNT counters a slot of a frame in flight.
+typedef struct GiReports {
+    GpuBuffer buffer;
+    bool reported[GPU_FRAMES_IN_FLIGHT_MAX];
+    u32 counters[GI_COUNTER_COUNT]; // of the newest
+} GiReports;
+
 // What belongs to one packet of a frame. A split frame draws two packets in one submit: the
 // renderer's own fields are those of the one in use, and the other's are parked here
 // (frame_sets_exchange). All other targets and buffers serve both, one after the other.
@@ -260,6 +293,10 @@ typedef struct FrameSet {
     GpuUsage gbuffer_usage[6];
     GpuBuffer text_vertices, text_indices, line_vertices;
     u32 text_ends[TEXT_LAYER_COUNT], line_vertex_count;
+    GiState gi;
+    GpuTexture gi_textures[GI_TEXTURES];
+    GpuBuffer gi_buffers[GI_BUFFERS];
+    GpuUsage gi_texture_usage[GI_TEXTURES], gi_buffer_usage[GI_BUFFERS];
 } FrameSet;
 
 // Light lists that the device makes (passes_lists.c): how large the buffers shall be, and what
@@ -272,28 +309,6 @@ typedef struct DeviceLists {
     bool reported[LIST_REPORTS_CAP];  // is on the way, or there and not read
     u32 counters[GRID_COUNTER_COUNT]; // of the newest report
 } DeviceLists;
-
-// The voxels and what was made of them (gi.c). Contents hang on keys of the packet: see PacketGi.
-#define GI_ATLAS_LEVELS_CAP 10
-typedef struct GiState {
-    GpuBindLayout build_layout, screen_layout;
-    GpuSampler sampler_linear, sampler_nearest_mip;
-    GpuBindGroup build_groups[GI_ATLAS_LEVELS_CAP]; // by level: its mip source is the level before
-    GpuBindGroup screen_group;
-    u32 bindings_version; // of the bindings in the groups
-    // Shape of the volumes that are there.
-    u32 dims[4], format, faces, filter, slot_cap;
-    u32 atlas_levels;
-    u32 probes[3];
-    u32 trace_width_px, trace_height_px;
-    // What they hold: keys of the packet that they were made from, 0 = nothing.
-    u64 static_key, dynamic_key, light_key;
-    u32 dynamic_tick,
-        probe_tick;   // of the packet that was voxelised, whose probes were traced, last
-    bool has_dynamic; // dynamic voxels are in the masks
-    // What this packet asks for, decided once (gi_begin): see the passes' needed functions.
-    bool voxelise_static, voxelise_dynamic, relight, trace_probes;
-} GiState;
 
 struct Renderer {
     Gpu *gpu;
@@ -351,7 +366,10 @@ struct Renderer {
     u32 line_vertex_count;
 
     DeviceLists lists;
+    GpuBindLayout gi_build_layout, gi_screen_layout;
+    GpuSampler gi_sampler_linear, gi_sampler_nearest_mip;
     GiState gi;
+    GiReports gi_reports;
     RendererStats stats;
 };
 
@@ -402,11 +420,18 @@ f32 note_width(f32 size_px, const char *text);
 bool debug_view_upload(Renderer *renderer, const Packet *packet);
 void debug_view_record(const PassContext *context);
 
-// gi.c: volumes, buffers and groups as this packet wants them, and what is to be done in it. False:
-// out of memory (LOG); the packet is then drawn without GI.
+// gi.c: volumes, buffers and groups as this packet wants them, and what is to be done in it.
 bool gi_create(Renderer *renderer);
 void gi_destroy(Renderer *renderer);
-bool gi_begin(Renderer *renderer, const Packet *packet);
+void gi_state_destroy(Renderer *renderer); // of the frame set in use
+// Before the frame's bind group is made. Out of memory (LOG): the packet is drawn without GI.
+void gi_begin(Renderer *renderer, const Packet *packet);
+bool gi_update_groups(Renderer *renderer); // after it
+// Counters of the frame that had this slot, which is done; true if the buffers by slot were too
+// small: they are larger in the next frame, which makes everything anew.
+bool gi_read_reports(Renderer *renderer, u32 slot);
+// Bytes of a buffer for so many voxels of all cascades and slots.
+u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams *params);
 // Does this packet have GI, and did gi_begin find room for it?
 bool gi_is_on(const PassContext *c);
 // Binds a pipeline that makes voxels with its groups; level: of the atlas, for the filter.

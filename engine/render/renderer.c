@@ -30,7 +30,7 @@ Renderer *renderer_create(Gpu *gpu) {
                                                          .kinds = {GPU_BINDING_SAMPLED_TEXTURE,
                                                                    GPU_BINDING_SAMPLED_TEXTURE,
                                                                    GPU_BINDING_SAMPLED_TEXTURE}});
-    if (!render_assets_create(renderer) || !volumes_create(renderer)) {
+    if (!render_assets_create(renderer) || !volumes_create(renderer) || !gi_create(renderer)) {
         renderer_destroy(renderer);
         return NULL;
     }
@@ -42,6 +42,7 @@ void renderer_destroy(Renderer *renderer) {
     gpu_wait_idle(renderer->gpu);
     pipelines_destroy(renderer);
     frame_upload_destroy(renderer);
+    gi_destroy(renderer);
     overlay_destroy(renderer);
     volumes_destroy(renderer);
     render_assets_destroy(renderer);
@@ -74,18 +75,30 @@ bool packet_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet) {
     return true;
 }
 
+// What is counted since the renderer was made stays.
+static void stats_begin(Renderer *renderer) {
+    RendererStats *s = &renderer->stats;
+    *s = (RendererStats){.pipelines = s->pipelines,
+                         .gi_static_voxelised = s->gi_static_voxelised,
+                         .gi_dynamic_voxelised = s->gi_dynamic_voxelised,
+                         .gi_relit = s->gi_relit,
+                         .gi_probes_traced = s->gi_probes_traced};
+}
+
 bool renderer_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet, bool to_swapchain,
                    const Overlay *overlay) {
-    renderer->stats = (RendererStats){.pipelines = renderer->stats.pipelines};
+    stats_begin(renderer);
     device_lists_read(renderer, gpu_frame_slot(renderer->gpu));
+    gi_read_reports(renderer, gpu_frame_slot(renderer->gpu));
     if (!packet_draw(renderer, cmd, packet)) return false;
     PassContext context = {.renderer = renderer, .cmd = cmd, .packet = packet, .overlay = overlay};
     if (to_swapchain) pass_run(&context, &present_pass);
     return true;
 }
 
-static bool draw_and_wait(Renderer *renderer, const Packet *packet, const Packet *other,
-                          const SplitView *split, Arena *arena, RenderImage *out) {
+// *again: the voxels did not fit into their buffers, which are larger now.
+static bool draw_once(Renderer *renderer, const Packet *packet, const Packet *other,
+                      const SplitView *split, Arena *arena, RenderImage *out, bool *again) {
     GpuCommands *cmd = gpu_frame_begin(renderer->gpu);
     if (!cmd) return false;
     bool drawn = split ? renderer_draw_split(renderer, cmd, packet, other, split, false, NULL)
@@ -103,7 +116,8 @@ static bool draw_and_wait(Renderer *renderer, const Packet *packet, const Packet
     if (!gpu_frame_end(renderer->gpu, true) || !drawn) return false;
     device_lists_read(renderer, slot);
     device_lists_stats(renderer, packet);
-    if (out) {
+    *again = gi_read_reports(renderer, slot);
+    if (out && !*again) {
         u64 size = (u64)packet->width_px * packet->height_px * 4;
         out->width_px = packet->width_px;
         out->height_px = packet->height_px;
@@ -112,6 +126,15 @@ static bool draw_and_wait(Renderer *renderer, const Packet *packet, const Packet
         out->hash = render_image_hash(out->rgba, out->width_px, out->height_px);
     }
     return true;
+}
+
+static bool draw_and_wait(Renderer *renderer, const Packet *packet, const Packet *other,
+                          const SplitView *split, Arena *arena, RenderImage *out) {
+    // Each round knows exactly how many voxels the last one wanted; a split has two sets of them.
+    bool again = true;
+    for (u32 round = 0; round < 4 && again; round++)
+        if (!draw_once(renderer, packet, other, split, arena, out, &again)) return false;
+    return !again;
 }
 
 bool renderer_render_image(Renderer *renderer, const Packet *packet, Arena *arena,

@@ -1,0 +1,530 @@
+// gi.c: the voxels' volumes and buffers, their bind groups, and what a packet asks to be made anew.
+//
+// Data in: a packet's PacketGi. Data out: resources RESOURCE_GI_* of the right shape, groups, and
+// the decisions in GiState that the passes' needed functions ask for. Called by frame_upload.c once
+// a packet, and by renderer.c for reports and read-backs. Does not: record any pass (gi_voxelise.c,
+// gi_light.c, gi_filter.c, gi_probes.c, gi_screen.c do).
+//
+// What the volumes hold hangs on keys: a key that stayed means nothing to do. So a renderer that
+// saw the same packet before, or none at all, ends with the same voxels. What is spread over frames
+// (a share of the probes a tick, feedback, policies) is made whole for packets that are
+// PACKET_COLD.
+#include "passes.h"
+#include "../base/log.h"
+#include <string.h>
+
+#define GI_SLOTS_MIN 4096
+// Buffers by slot that were too small grow to what was wanted and this share more.
+#define GI_SLOTS_SPARE(count) ((count) + (count) / 8)
+
+static const char *const resource_labels[RESOURCE_COUNT] = {
+#define X(id, label, format) label,
+    RENDER_RESOURCES(X)
+#undef X
+};
+
+// --- Life ---
+
+bool gi_create(Renderer *renderer) {
+    GpuBindLayoutDesc build = {.label = "gi build", .count = BUILD_COUNT};
+    for (u32 i = 0; i < BUILD_COUNT; i++)
+        build.kinds[i] = i < BUILD_FIRST_STORAGE         ? GPU_BINDING_UNIFORM_BUFFER
+                         : i < BUILD_FIRST_IMAGE         ? GPU_BINDING_STORAGE_BUFFER
+                         : i < BUILD_FIRST_STORAGE_IMAGE ? GPU_BINDING_SAMPLED_TEXTURE
+                                                         : GPU_BINDING_STORAGE_TEXTURE;
+    renderer->gi_build_layout = gpu_create_bind_layout(renderer->gpu, &build);
+    GpuBindLayoutDesc screen = {.label = "gi screen", .count = BINDING_GI_COUNT};
+    for (u32 i = 0; i < BINDING_GI_COUNT; i++)
+        screen.kinds[i] = i < BINDING_GI_FLOW              ? GPU_BINDING_UNIFORM_BUFFER
+                          : i < BINDING_GI_FIRST_IMAGE     ? GPU_BINDING_STORAGE_BUFFER
+                          : i < BINDING_GI_TRACE_0_STORAGE ? GPU_BINDING_SAMPLED_TEXTURE
+                                                           : GPU_BINDING_STORAGE_TEXTURE;
+    renderer->gi_screen_layout = gpu_create_bind_layout(renderer->gpu, &screen);
+    renderer->gi_sampler_linear =
+        gpu_create_sampler(renderer->gpu, &(GpuSamplerDesc){.label = "gi linear"});
+    renderer->gi_sampler_nearest_mip = gpu_create_sampler(
+        renderer->gpu, &(GpuSamplerDesc){.label = "gi nearest mip", .nearest_mips = true});
+    renderer->gi_reports.buffer =
+        gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = "gi reports",
+                                                          .heap = "staging",
+                                                          .kind = GPU_BUFFER_READBACK,
+                                                          .size = GPU_FRAMES_IN_FLIGHT_MAX *
+                                                                  GI_COUNTER_COUNT * sizeof(u32)});
+    return renderer->gi_build_layout.id && renderer->gi_screen_layout.id &&
+           renderer->gi_sampler_linear.id && renderer->gi_sampler_nearest_mip.id &&
+           renderer->gi_reports.buffer.id;
+}
+
+static void groups_destroy(Renderer *renderer) {
+    GiState *gi = &renderer->gi;
+    for (u32 i = 0; i < GI_ATLAS_LEVELS_CAP; i++) {
+        if (gi->build_groups[i].id) gpu_destroy_bind_group(renderer->gpu, gi->build_groups[i]);
+        gi->build_groups[i] = (GpuBindGroup){0};
+    }
+    if (gi->screen_group.id) gpu_destroy_bind_group(renderer->gpu, gi->screen_group);
+    gi->screen_group = (GpuBindGroup){0};
+    gi->bindings_version = 0;
+}
+
+void gi_state_destroy(Renderer *renderer) {
+    groups_destroy(renderer);
+    for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_FIRST_BUFFER; id++) {
+        if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
+        renderer->targets[id] = (GpuTexture){0};
+        renderer->usage[id] = GPU_USAGE_NONE;
+    }
+    for (u32 id = RESOURCE_FIRST_GI_BUFFER; id < RESOURCE_COUNT; id++) {
+        GpuBuffer *buffer = &renderer->device_buffers[id];
+        if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
+        *buffer = (GpuBuffer){0};
+        renderer->usage[id] = GPU_USAGE_NONE;
+    }
+    renderer->gi = (GiState){0};
+}
+
+void gi_destroy(Renderer *renderer) {
+    if (renderer->gi_reports.buffer.id)
+        gpu_destroy_buffer(renderer->gpu, renderer->gi_reports.buffer);
+    if (renderer->gi_sampler_linear.id)
+        gpu_destroy_sampler(renderer->gpu, renderer->gi_sampler_linear);
+    if (renderer->gi_sampler_nearest_mip.id)
+        gpu_destroy_sampler(renderer->gpu, renderer->gi_sampler_nearest_mip);
+}
+
+// --- Shapes ---
+
+// Does the picture, or a light, ask for the mean visibility of the voxels?
+static bool wants_visibility(const Packet *packet) {
+    const TracedLightRecord *traced = PACKET_DATA(packet, traced_lights, TracedLightRecord);
+    bool wanted =
+        packet->settings.view == VIEW_GI_VOXELS && packet->settings.gi_show == GI_SHOW_VISIBILITY;
+    for (u32 i = 0; i < packet->traced_lights.count; i++) wanted |= traced[i].shadow[2] > 0.0f;
+    return wanted;
+}
+
+static bool wants_irradiance(const Packet *packet) {
+    return packet->gi.params.diffuse == GI_DIFFUSE_VOXELS ||
+           (packet->settings.view == VIEW_GI_VOXELS &&
+            packet->settings.gi_show == GI_SHOW_IRRADIANCE);
+}
+
+// A texture that this packet does not use is as small as a 3D texture can be: its binding must hold
+// something.
+static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
+    const GiParams *params = &packet->gi.params;
+    const GiRecord *record = &packet->gi.record;
+    const u32 *dims = record->dims;
+    u32 blocks = params->filter == GI_FILTER_ISOTROPIC ? 1 : 6;
+    const u32 unused[4] = {2, 2, 2, 1}, volume[4] = {dims[0], dims[1], dims[2] * dims[3], 1};
+    const u32 atlas[4] = {record->atlas[0] * blocks, record->atlas[1], record->atlas[2] * dims[3],
+                          record->atlas[3]};
+    const u32 probes[4] = {record->probes[0] * 6, record->probes[1], MAX(record->probes[2], 2), 1};
+    const u32 traced[4] = {(u32)record->trace[0], (u32)record->trace[1], 1, 1};
+    const u32 *shape = unused;
+    switch (id) {
+    case RESOURCE_GI_BASE:
+        if (params->faces == GI_FACES_SHARED) shape = volume;
+        break;
+    case RESOURCE_GI_ATLAS:
+        shape = atlas;
+        break;
+    case RESOURCE_GI_IRRADIANCE:
+        if (wants_irradiance(packet)) shape = volume;
+        break;
+    case RESOURCE_GI_VISIBILITY:
+        if (wants_visibility(packet)) shape = volume;
+        break;
+    case RESOURCE_GI_PROBES:
+        if (params->diffuse == GI_DIFFUSE_PROBES) shape = probes;
+        break;
+    default:
+        shape = traced;
+        break;
+    }
+    memcpy(out, shape, 4 * sizeof *out);
+}
+
+static bool texture_ensure(Renderer *renderer, const Packet *packet, RenderResource id,
+                           bool *made) {
+    GiState *gi = &renderer->gi;
+    u32 shape[4], *size = gi->sizes[id - RESOURCE_FIRST_GI];
+    texture_shape(packet, id, shape);
+    bool is_volume = id == RESOURCE_GI_BASE || id == RESOURCE_GI_ATLAS;
+    GpuFormat format = !is_volume                                   ? resource_formats[id]
+                       : packet->gi.params.format == GI_FORMAT_BYTE ? GPU_FORMAT_RGBA8
+                                                                    : GPU_FORMAT_RGBA16F;
+    bool same = memcmp(shape, size, sizeof shape) == 0 &&
+                (!is_volume || gi->format == packet->gi.params.format);
+    if (renderer->targets[id].id && same) return true;
+    if (renderer->targets[id].id) gpu_destroy_texture(renderer->gpu, renderer->targets[id]);
+    renderer->targets[id] = gpu_create_texture(
+        renderer->gpu, &(GpuTextureDesc){.label = resource_labels[id],
+                                         .heap = "gi",
+                                         .format = format,
+                                         .width = shape[0],
+                                         .height = shape[1],
+                                         .depth = id >= RESOURCE_GI_TRACE_0 ? 1 : MAX(shape[2], 2),
+                                         .mip_count = shape[3],
+                                         .storage = true,
+                                         .sampled = true});
+    renderer->usage[id] = GPU_USAGE_NONE;
+    renderer->frame_group_stale = true;
+    memcpy(size, shape, sizeof shape);
+    *made |= id < RESOURCE_GI_TRACE_0;
+    return renderer->targets[id].id != 0;
+}
+
+static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, bool *made) {
+    GpuBuffer *buffer = &renderer->device_buffers[id];
+    size = MAX(size, 256);
+    // What shrank by much is made anew as well: 512^3 voxels leave hundreds of megabytes behind.
+    u64 there = buffer->id ? gpu_buffer_size(renderer->gpu, *buffer) : 0;
+    if (there >= size && there / 4 <= size) return true;
+    if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
+    *buffer =
+        gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = resource_labels[id],
+                                                          .heap = "gi",
+                                                          .size = size,
+                                                          .indirect = id == RESOURCE_GI_COUNTERS});
+    renderer->usage[id] = GPU_USAGE_NONE;
+    renderer->frame_group_stale = true;
+    *made = true;
+    return buffer->id != 0;
+}
+
+u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams *params) {
+    const u64 word = sizeof(u32), words = (voxels + 31) / 32 * (params->solid ? 3 : 2);
+    switch (buffer) {
+    case RESOURCE_GI_MASKS:
+    case RESOURCE_GI_RANKS:
+        return words * word;
+    case RESOURCE_GI_VOXELS:
+        return slots * word;
+    case RESOURCE_GI_ATTRIBUTES:
+        return (u64)slots * GI_ATTRIBUTE_WORDS * word;
+    case RESOURCE_GI_ACCUMULATORS:
+        return (u64)MIN(slots, 1u << 19) * 16 * word;
+    case RESOURCE_GI_RADIANCE:
+        return (u64)slots * (params->faces == GI_FACES_APART ? 6 : 1) * 2 * word;
+    case RESOURCE_GI_COUNTERS:
+        return GI_COUNTER_COUNT * word;
+    default:
+        return 0;
+    }
+}
+
+// A surface through every row of the box, two voxels thick, is about this; more is found out by the
+// first frame.
+static u32 slots_at_first(const u32 dims[4]) {
+    u64 x = dims[0], y = dims[1], z = dims[2];
+    u64 slots = (x * y + y * z + z * x) * 4 * dims[3], voxels = x * y * z * dims[3];
+    return (u32)MIN(MAX(slots, GI_SLOTS_MIN), voxels);
+}
+
+static bool resize(Renderer *renderer, const Packet *packet) {
+    GiState *gi = &renderer->gi;
+    const GiParams *params = &packet->gi.params;
+    const GiRecord *record = &packet->gi.record;
+    bool same = memcmp(gi->dims, record->dims, sizeof gi->dims) == 0 &&
+                memcmp(gi->atlas, record->atlas, sizeof gi->atlas) == 0 &&
+                gi->faces == params->faces && gi->filter == params->filter &&
+                gi->solid == params->solid;
+    if (!same || gi->slot_cap == 0) gi->slot_cap = slots_at_first(record->dims);
+    bool ok = true, made = !same;
+    for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_FIRST_BUFFER && ok; id++)
+        ok = texture_ensure(renderer, packet, (RenderResource)id, &made);
+    u64 voxels = (u64)record->dims[0] * record->dims[1] * record->dims[2] * record->dims[3];
+    for (u32 id = RESOURCE_FIRST_GI_BUFFER; id < RESOURCE_COUNT && ok; id++)
+        ok =
+            buffer_ensure(renderer, (RenderResource)id,
+                          gi_buffer_bytes((RenderResource)id, voxels, gi->slot_cap, params), &made);
+    memcpy(gi->dims, record->dims, sizeof gi->dims);
+    memcpy(gi->atlas, record->atlas, sizeof gi->atlas);
+    gi->format = params->format;
+    gi->faces = params->faces;
+    gi->filter = params->filter;
+    gi->solid = params->solid;
+    if (made || !ok) {
+        gi->static_key = gi->dynamic_key = gi->light_key = gi->probe_key = 0;
+        gi->has_dynamic = gi->has_lit = false;
+    }
+    return ok;
+}
+
+// --- Decisions ---
+
+static bool dynamic_is_due(const GiState *gi, const Packet *packet) {
+    const GiParams *params = &packet->gi.params;
+    if (packet->gi_dynamic_draws.count == 0 && !gi->has_dynamic) return false;
+    if (gi->dynamic_key == 0) return true;
+    bool changed = gi->dynamic_key != packet->gi.dynamic_key;
+    switch (params->policy) {
+    case GI_POLICY_EVERY_FRAME:
+        return true;
+    case GI_POLICY_EVERY_N:
+        return changed && (gi->is_cold ||
+                           packet->tick / params->every_n != gi->dynamic_tick / params->every_n);
+    case GI_POLICY_NEVER:
+        return changed && gi->is_cold;
+    default:
+        return changed;
+    }
+}
+
+// Keys are taken over here: the passes that follow make it true.
+static void decide(Renderer *renderer, const Packet *packet) {
+    GiState *gi = &renderer->gi;
+    const PacketGi *wanted = &packet->gi;
+    gi->is_cold = (packet->flags & PACKET_COLD) != 0 || !gi->has_lit;
+    bool warming_up = renderer->is_warming_up && !gi->is_warm;
+    gi->voxelise_static = gi->static_key != wanted->static_key || warming_up;
+    if (gi->voxelise_static) gi->dynamic_key = 0; // what is static now takes voxels from them
+    gi->voxelise_dynamic = dynamic_is_due(gi, packet) || warming_up;
+    gi->relight = gi->voxelise_static || gi->voxelise_dynamic || !gi->has_lit ||
+                  gi->light_key != wanted->light_key || wanted->params.feedback;
+    bool has_probes = wanted->params.diffuse == GI_DIFFUSE_PROBES;
+    if (gi->relight || gi->is_cold || gi->probe_key != wanted->light_key)
+        gi->probe_turns_left = gi->is_cold ? 1 : wanted->params.share;
+    gi->trace_probes = has_probes && gi->probe_turns_left > 0;
+    RendererStats *stats = &renderer->stats;
+    if (gi->voxelise_static) {
+        gi->static_key = wanted->static_key;
+        stats->gi_static_voxelised++;
+    }
+    if (gi->voxelise_dynamic) {
+        gi->dynamic_key = wanted->dynamic_key;
+        gi->dynamic_tick = packet->tick;
+        gi->has_dynamic = packet->gi_dynamic_draws.count > 0;
+        stats->gi_dynamic_voxelised++;
+    }
+    if (gi->relight) {
+        gi->light_key = wanted->light_key;
+        gi->has_lit = true;
+        stats->gi_relit++;
+    }
+    if (gi->trace_probes) {
+        gi->probe_key = wanted->light_key;
+        gi->probe_turn++;
+        gi->probe_turns_left--;
+        stats->gi_probes_traced++;
+    }
+    gi->is_warm |= renderer->is_warming_up;
+}
+
+// Bits of the ways in which voxels ask for lights, and surfaces for traced lights.
+static void find_shadows(GiState *gi, const Packet *packet) {
+    const GiLightRecord *lights = PACKET_DATA(packet, gi_lights, GiLightRecord);
+    const TracedLightRecord *traced = PACKET_DATA(packet, traced_lights, TracedLightRecord);
+    gi->voxel_shadows = gi->traced_shadows = 0;
+    for (u32 i = 0; i < packet->gi_lights.count; i++)
+        gi->voxel_shadows |= 1u << ((u32)lights[i].color[3] & 3);
+    for (u32 i = 0; i < packet->traced_lights.count; i++)
+        gi->traced_shadows |= 1u << ((u32)traced[i].shadow[2] & 1);
+}
+
+void gi_begin(Renderer *renderer, const Packet *packet) {
+    GiState *gi = &renderer->gi;
+    gi->voxelise_static = gi->voxelise_dynamic = gi->relight = gi->trace_probes = false;
+    gi->is_on = packet->gi.params.enabled && renderer->vertices.id && renderer->indices.id;
+    if (!gi->is_on) return;
+    if (!resize(renderer, packet)) {
+        static bool told;
+        if (!told)
+            LOG(RENDER_LIMIT, "no room for %u x %u x %u voxels: drawn without global illumination",
+                packet->gi.record.dims[0], packet->gi.record.dims[1], packet->gi.record.dims[2]);
+        told = true;
+        gi_state_destroy(renderer);
+        return;
+    }
+    find_shadows(gi, packet);
+    decide(renderer, packet);
+}
+
+bool gi_is_on(const PassContext *c) { return c->renderer->gi.is_on; }
+
+// --- Groups ---
+
+static GpuBinding frame_buffer(const Renderer *r, FrameBuffer id) {
+    return (GpuBinding){.buffer = r->buffers[id]};
+}
+static GpuBinding device_buffer(const Renderer *r, RenderResource id) {
+    return (GpuBinding){.buffer = r->device_buffers[id]};
+}
+static GpuBinding texture(const Renderer *r, RenderResource id, GpuSampler sampler) {
+    return (GpuBinding){.texture = r->targets[id], .sampler = sampler};
+}
+
+static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
+    b[BUILD_GI] = b[BUILD_FLOW] = frame_buffer(r, FRAME_BUFFER_GI);
+    b[BUILD_FRAME] = frame_buffer(r, FRAME_BUFFER_FRAME);
+    b[BUILD_MATERIALS] = frame_buffer(r, FRAME_BUFFER_MATERIALS);
+    b[BUILD_DIRECTIONALS] = frame_buffer(r, FRAME_BUFFER_DIRECTIONALS);
+    b[BUILD_VERTICES] = (GpuBinding){.buffer = r->vertices};
+    b[BUILD_MESH_INDICES] = (GpuBinding){.buffer = r->indices};
+    b[BUILD_INSTANCES] = frame_buffer(r, FRAME_BUFFER_GI_INSTANCES);
+    b[BUILD_MASKS] = device_buffer(r, RESOURCE_GI_MASKS);
+    b[BUILD_RANKS] = device_buffer(r, RESOURCE_GI_RANKS);
+    b[BUILD_VOXELS] = device_buffer(r, RESOURCE_GI_VOXELS);
+    b[BUILD_ATTRIBUTES] = device_buffer(r, RESOURCE_GI_ATTRIBUTES);
+    b[BUILD_ACCUMULATORS] = device_buffer(r, RESOURCE_GI_ACCUMULATORS);
+    b[BUILD_RADIANCE] = device_buffer(r, RESOURCE_GI_RADIANCE);
+    b[BUILD_COUNTERS] = device_buffer(r, RESOURCE_GI_COUNTERS);
+    b[BUILD_LIGHTS] = frame_buffer(r, FRAME_BUFFER_GI_LIGHTS);
+    b[BUILD_LISTS] = frame_buffer(r, FRAME_BUFFER_GI_LISTS);
+    b[BUILD_SHADOW_MAP] = texture(r, RESOURCE_SHADOW_MAP, r->sampler_shadow);
+    b[BUILD_BASE] = texture(r, RESOURCE_GI_BASE, r->gi_sampler_linear);
+    b[BUILD_ATLAS] = texture(r, RESOURCE_GI_ATLAS, r->gi_sampler_linear);
+    const GpuSampler none = {0};
+    b[BUILD_BASE_STORAGE] = texture(r, RESOURCE_GI_BASE, none);
+    b[BUILD_IRRADIANCE] = texture(r, RESOURCE_GI_IRRADIANCE, none);
+    b[BUILD_VISIBILITY] = texture(r, RESOURCE_GI_VISIBILITY, none);
+    b[BUILD_PROBES] = texture(r, RESOURCE_GI_PROBES, none);
+    b[BUILD_MIP_SOURCE] = b[BUILD_MIP_TARGET] = texture(r, RESOURCE_GI_ATLAS, none);
+    b[BUILD_MIP_SOURCE].mip = level > 0 ? level - 1 : 0;
+    b[BUILD_MIP_TARGET].mip = level;
+}
+
+static void bind_screen(const Renderer *r, GpuBinding *b) {
+    const GpuSampler linear = r->gi_sampler_linear, none = {0};
+    b[BINDING_GI] = b[BINDING_GI_FLOW] = frame_buffer(r, FRAME_BUFFER_GI);
+    b[BINDING_GI_TRACED] = frame_buffer(r, FRAME_BUFFER_TRACED_LIGHTS);
+    b[BINDING_GI_MASKS] = device_buffer(r, RESOURCE_GI_MASKS);
+    b[BINDING_GI_RANKS] = device_buffer(r, RESOURCE_GI_RANKS);
+    b[BINDING_GI_ATTRIBUTES] = device_buffer(r, RESOURCE_GI_ATTRIBUTES);
+    b[BINDING_GI_BASE] = texture(r, RESOURCE_GI_BASE, linear);
+    b[BINDING_GI_ATLAS] = texture(r, RESOURCE_GI_ATLAS, linear);
+    b[BINDING_GI_ATLAS_NEAREST_MIP] = texture(r, RESOURCE_GI_ATLAS, r->gi_sampler_nearest_mip);
+    b[BINDING_GI_IRRADIANCE] = texture(r, RESOURCE_GI_IRRADIANCE, linear);
+    b[BINDING_GI_VISIBILITY] = texture(r, RESOURCE_GI_VISIBILITY, linear);
+    b[BINDING_GI_PROBES] = texture(r, RESOURCE_GI_PROBES, linear);
+    b[BINDING_GI_TRACE_0] = texture(r, RESOURCE_GI_TRACE_0, r->sampler_nearest);
+    b[BINDING_GI_TRACE_1] = texture(r, RESOURCE_GI_TRACE_1, r->sampler_nearest);
+    b[BINDING_GI_TRACE_0_STORAGE] = texture(r, RESOURCE_GI_TRACE_0, none);
+    b[BINDING_GI_TRACE_1_STORAGE] = texture(r, RESOURCE_GI_TRACE_1, none);
+}
+
+bool gi_update_groups(Renderer *renderer) {
+    GiState *gi = &renderer->gi;
+    if (!gi->is_on) return true;
+    if (gi->screen_group.id && gi->bindings_version == renderer->bindings_version) return true;
+    groups_destroy(renderer);
+    GpuBindGroupDesc desc = {.label = "gi screen", .layout = renderer->gi_screen_layout};
+    bind_screen(renderer, desc.bindings);
+    gi->screen_group = gpu_create_bind_group(renderer->gpu, &desc);
+    bool ok = gi->screen_group.id != 0;
+    for (u32 level = 0; level < gi->atlas[3] && ok; level++) {
+        desc = (GpuBindGroupDesc){.label = "gi build", .layout = renderer->gi_build_layout};
+        bind_build(renderer, desc.bindings, level);
+        gi->build_groups[level] = gpu_create_bind_group(renderer->gpu, &desc);
+        ok = gi->build_groups[level].id != 0;
+    }
+    gi->bindings_version = renderer->bindings_version;
+    return ok;
+}
+
+void gi_bind_build(const PassContext *c, GpuPipeline pipeline, u32 level) {
+    gpu_cmd_bind_pipeline(c->cmd, pipeline);
+    gpu_cmd_bind_group(c->cmd, 0, c->renderer->gi.build_groups[level]);
+}
+
+void gi_bind_screen(const PassContext *c, GpuPipeline pipeline) {
+    bind_frame(c, pipeline);
+    gpu_cmd_bind_group(c->cmd, 2, c->renderer->gi.screen_group);
+}
+
+void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count) {
+    GpuBarrier barriers[RESOURCE_COUNT];
+    LUZ_ASSERT(count <= COUNT_OF(barriers));
+    for (u32 i = 0; i < count; i++) {
+        GpuUsage usage = c->renderer->usage[resources[i]];
+        barriers[i] = (GpuBarrier){.texture = c->renderer->targets[resources[i]],
+                                   .buffer = c->renderer->device_buffers[resources[i]],
+                                   .from = usage,
+                                   .to = usage};
+    }
+    gpu_cmd_barriers(c->cmd, barriers, count);
+}
+
+// --- Reports ---
+
+static bool report_needed(const PassContext *c) {
+    const GiState *gi = &c->renderer->gi;
+    return gi->is_on && (gi->voxelise_static || gi->voxelise_dynamic);
+}
+static void report_record(const PassContext *c) {
+    GiReports *reports = &c->renderer->gi_reports;
+    u32 slot = gpu_frame_slot(c->renderer->gpu), size = GI_COUNTER_COUNT * sizeof(u32);
+    gpu_cmd_copy_buffer(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS], 0,
+                        reports->buffer, (u64)slot * size, size);
+    reports->reported[slot] = true;
+}
+const Pass gi_report_pass = {
+    "voxel report", {USE(GI_COUNTERS, COPY_SOURCE)}, 1, report_record, report_needed};
+
+bool gi_read_reports(Renderer *renderer, u32 slot) {
+    GiReports *reports = &renderer->gi_reports;
+    GiState *gi = &renderer->gi;
+    if (!reports->reported[slot]) return false;
+    reports->reported[slot] = false;
+    const u32 *all = gpu_buffer_map(renderer->gpu, reports->buffer);
+    memcpy(reports->counters, all + (u64)slot * GI_COUNTER_COUNT, sizeof reports->counters);
+    u64 wanted = (u64)reports->counters[GI_COUNTER_STATIC] + reports->counters[GI_COUNTER_DYNAMIC];
+    if (reports->counters[GI_COUNTER_LOST] == 0 || wanted <= gi->slot_cap) return false;
+    gi->slot_cap = (u32)MIN(GI_SLOTS_SPARE(wanted), UINT32_MAX);
+    return true;
+}
+
+u64 gi_memory(const Renderer *renderer) {
+    GpuHeapStat stats[32];
+    u32 count = gpu_heap_stats(renderer->gpu, stats, COUNT_OF(stats));
+    for (u32 i = 0; i < MIN(count, COUNT_OF(stats)); i++)
+        if (strcmp(stats[i].name, "gi") == 0) return stats[i].used;
+    return 0;
+}
+
+// --- For tests and tools ---
+
+u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size) {
+    static const RenderResource ids[GI_VOLUME_COUNT] = {
+        [GI_VOLUME_MASKS] = RESOURCE_GI_MASKS,
+        [GI_VOLUME_RANKS] = RESOURCE_GI_RANKS,
+        [GI_VOLUME_VOXELS] = RESOURCE_GI_VOXELS,
+        [GI_VOLUME_ATTRIBUTES] = RESOURCE_GI_ATTRIBUTES,
+        [GI_VOLUME_RADIANCE] = RESOURCE_GI_RADIANCE,
+        [GI_VOLUME_COUNTERS] = RESOURCE_GI_COUNTERS,
+        [GI_VOLUME_BASE] = RESOURCE_GI_BASE,
+        [GI_VOLUME_ATLAS] = RESOURCE_GI_ATLAS,
+        [GI_VOLUME_IRRADIANCE] = RESOURCE_GI_IRRADIANCE,
+        [GI_VOLUME_VISIBILITY] = RESOURCE_GI_VISIBILITY,
+        [GI_VOLUME_PROBES] = RESOURCE_GI_PROBES,
+    };
+    RenderResource id = ids[which];
+    bool is_buffer = id >= RESOURCE_FIRST_BUFFER;
+    GpuTexture from_texture = renderer->targets[id];
+    GpuBuffer from = renderer->device_buffers[id];
+    if (is_buffer ? !from.id : !from_texture.id) return 0;
+    u64 whole = is_buffer ? gpu_buffer_size(renderer->gpu, from)
+                          : gpu_texture_size(renderer->gpu, from_texture);
+    GpuBuffer to = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = "gi readback",
+                                                                     .heap = "staging",
+                                                                     .kind = GPU_BUFFER_READBACK,
+                                                                     .size = whole});
+    GpuCommands *cmd = to.id ? gpu_frame_begin(renderer->gpu) : NULL;
+    if (!cmd) return 0;
+    gpu_cmd_barriers(cmd,
+                     &(GpuBarrier){.texture = from_texture,
+                                   .buffer = from,
+                                   .from = renderer->usage[id],
+                                   .to = GPU_USAGE_COPY_SOURCE},
+                     1);
+    renderer->usage[id] = GPU_USAGE_COPY_SOURCE;
+    if (is_buffer)
+        gpu_cmd_copy_buffer(cmd, from, 0, to, 0, whole);
+    else
+        gpu_cmd_copy_mips_to_buffer(cmd, from_texture, to);
+    bool ok = gpu_frame_end(renderer->gpu, true);
+    size = MIN(size, whole);
+    if (ok) memcpy(out, gpu_buffer_map(renderer->gpu, to), size);
+    gpu_destroy_buffer(renderer->gpu, to);
+    return ok ? size : 0;
+}

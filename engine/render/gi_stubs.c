@@ -1,0 +1,21 @@
+// gi_stubs.c: passes that are still to come; each row goes when its pass does.
+#include "passes.h"
+
+static bool never(const PassContext *c) {
+    (void)c;
+    return false;
+}
+#define STUB(id) const Pass id##_pass = {.name = #id, .needed = never}
+STUB(gi_static);
+STUB(gi_dynamic);
+STUB(gi_light);
+STUB(gi_filter);
+STUB(gi_bounce);
+STUB(gi_refilter);
+STUB(gi_irradiance);
+STUB(gi_probes);
+STUB(gi_gbuffer);
+STUB(gi_traced);
+STUB(gi_trace);
+STUB(gi_compose);
+STUB(gi_view);
