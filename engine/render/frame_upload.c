@@ -84,9 +84,9 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
     bool new_size = renderer->gbuffer_width_px != packet->width_px ||
                     renderer->gbuffer_height_px != packet->height_px;
     bool new_depth = renderer->depth_format != depth_format || new_size;
-    bool new_gbuffer = renderer->layout != packet->settings.layout || new_size;
+    bool new_gbuffer = renderer->layout != layout_of(packet) || new_size;
     renderer->depth_format = depth_format;
-    renderer->layout = packet->settings.layout;
+    renderer->layout = layout_of(packet);
     for (u32 i = 0; new_gbuffer && i < 5; i++)
         ok = ok &&
              target_create(renderer, RESOURCE_GBUFFER_0 + i, packet->width_px, packet->height_px);

@@ -9,13 +9,7 @@ static bool never(const PassContext *c) {
 STUB(gi_static);
 STUB(gi_dynamic);
 STUB(gi_light);
-STUB(gi_filter);
 STUB(gi_bounce);
-STUB(gi_refilter);
 STUB(gi_irradiance);
 STUB(gi_probes);
-STUB(gi_gbuffer);
-STUB(gi_traced);
-STUB(gi_trace);
-STUB(gi_compose);
 STUB(gi_view);

@@ -76,6 +76,14 @@ u32 layout_bytes(const LayoutRow *row) {
     return bytes;
 }
 
+GbufferLayout layout_of(const Packet *packet) {
+    const RenderSettings *s = &packet->settings;
+    bool shades_meshes = s->path == PATH_FORWARD || s->path == PATH_MULTIPASS ||
+                         s->path == PATH_TILED_FORWARD || s->path == PATH_CLUSTERED_FORWARD;
+    bool for_gi = packet->gi.params.enabled && shades_meshes;
+    return for_gi && path_of(packet) == &path_table[s->path] ? LAYOUT_LEAN : s->layout;
+}
+
 RendererLayoutInfo renderer_layout_info(GbufferLayout layout) {
     const LayoutRow *row = &layout_table[layout];
     return (RendererLayoutInfo){.name = row->name,

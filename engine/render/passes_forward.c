@@ -31,11 +31,15 @@ static void prepass_record(const PassContext *c) {
     draw_list(c, PIPELINE_PREPASS_MASK, c->packet->mask_draws, true);
     gpu_cmd_end_rendering(c->cmd);
 }
+// The G-buffer that GI needs has the same depth, of one sample a pixel.
+static bool prepass_needed(const PassContext *c) {
+    return !gi_is_on(c) || c->renderer->samples > 1;
+}
 const Pass prepass_pass = {"depth pre-pass",
                            {OVERWRITE(DEPTH, DEPTH_TARGET), OVERWRITE(DEPTH_MS, DEPTH_TARGET)},
                            2,
                            prepass_record,
-                           NULL,
+                           prepass_needed,
                            NULL};
 
 // Holes need no second look: nothing lies at a hole's depth.

@@ -26,7 +26,7 @@ const Pass shadow_pass = {
 static void gbuffer_record(const PassContext *c) {
     // Colour is cleared as well: the background's material must be an index that exists.
     GpuRendering rendering = {.depth = CLEARED(DEPTH)};
-    const LayoutRow *layout = &layout_table[c->packet->settings.layout];
+    const LayoutRow *layout = &layout_table[layout_of(c->packet)];
     while (rendering.target_count < COUNT_OF(layout->targets) &&
            layout->targets[rendering.target_count]) {
         u32 i = rendering.target_count++;

@@ -1,0 +1,69 @@
+// gi_screen.c: passes that bring the voxels' light to the screen: lights with traced shadows, cones
+// from every pixel (or one in 2 x 2, 4 x 4), and the sum with what lies in HDR.
+// Data in: G-buffer, depth, the voxels' volumes, a packet's traced lights. Data out: commands.
+// Called by: pass_run (passes.c), after the lit surfaces and before the sky.
+// Does not: make voxels or filter them.
+//
+// Paths that shade where they draw have no G-buffer: gi_gbuffer_pass draws one (layout_of: lean) of
+// one sample a pixel. With several samples, what a pixel's middle shows is added to all of them.
+#include "passes.h"
+
+static void gi_gbuffer_record(const PassContext *c) { gbuffer_pass.record(c); }
+const Pass gi_gbuffer_pass = {"gi gbuffer",
+                              {OVERWRITE_GBUFFER(COLOR_TARGET), OVERWRITE(DEPTH, DEPTH_TARGET),
+                               USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
+                              7,
+                              gi_gbuffer_record,
+                              gi_is_on};
+
+static void draw_over(const PassContext *c, PipelineKind kind) {
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    begin(c, &(GpuRendering){.targets = {color_target(c, false)}, .target_count = 1});
+    gi_bind_screen(c, pipeline);
+    gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
+    gpu_cmd_end_rendering(c->cmd);
+    c->renderer->stats.draw_calls++;
+}
+
+static bool traced_needed(const PassContext *c) {
+    return gi_is_on(c) && c->packet->traced_lights.count > 0;
+}
+static void traced_record(const PassContext *c) { draw_over(c, PIPELINE_GI_TRACED_LIGHTS); }
+const Pass gi_traced_pass = {"gi traced lights",
+                             {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET),
+                              USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
+                              USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
+                              USE(GI_VISIBILITY, SAMPLED_FRAGMENT)},
+                             11,
+                             traced_record,
+                             traced_needed};
+
+static void trace_record(const PassContext *c) {
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_TRACE, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    gi_bind_screen(c, pipeline);
+    const GiRecord *gi = &c->packet->gi.record;
+    gpu_cmd_dispatch(c->cmd, ((u32)gi->trace[0] + 7) / 8, ((u32)gi->trace[1] + 7) / 8, 1);
+}
+const Pass gi_trace_pass = {"gi trace",
+                            {OVERWRITE(GI_TRACE_0, STORAGE_COMPUTE),
+                             OVERWRITE(GI_TRACE_1, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+                             USE(DEPTH, SAMPLED_COMPUTE), USE(GI_BASE, SAMPLED_COMPUTE),
+                             USE(GI_ATLAS, SAMPLED_COMPUTE), USE(GI_IRRADIANCE, SAMPLED_COMPUTE),
+                             USE(GI_PROBES, SAMPLED_COMPUTE)},
+                            12,
+                            trace_record,
+                            gi_is_on};
+
+static void compose_record(const PassContext *c) { draw_over(c, PIPELINE_GI_COMPOSE); }
+const Pass gi_compose_pass = {"gi compose",
+                              {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET),
+                               USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
+                               USE(GI_TRACE_0, SAMPLED_FRAGMENT), USE(GI_TRACE_1, SAMPLED_FRAGMENT),
+                               USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
+                               USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
+                               USE(GI_PROBES, SAMPLED_FRAGMENT)},
+                              14,
+                              compose_record,
+                              gi_is_on};

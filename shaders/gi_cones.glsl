@@ -1,0 +1,180 @@
+// gi_cones.glsl: cones through the voxels: the one way in which bounces, probes and the screen
+// gather light. Include gi.glsl first (with GI_BUILD or GI_SCREEN); gi_sky and what calls it also
+// need a FrameRecord `frame`.
+//
+// A cone (Crassin et al. 2011, "Interactive indirect illumination using voxel cone tracing"; values:
+// specification of voxel GI, 6) starts a voxel from its apex. At length t it is 2 tan(a / 2) t wide,
+// at least a voxel; the voxels are read filtered over that width, composited front to back, and t
+// grows by the width times the step factor, until nothing shines through, the cone left the box, or
+// its reach ends.
+//
+// The software driver sets the shape: only the exit of a loop saves work, and the reads are most of
+// the work. So a cone through one cascade is three loops that read ever coarser: where it is
+// narrower than a voxel the base alone (1 read), up to two voxels base and the finest level of the
+// atlas (4 reads of one level each), from there on the atlas (3 reads of two levels). What does not
+// change along a cone is made before, and all that steers a loop comes from gi_flow.
+#ifndef GI_CONES_GLSL
+#define GI_CONES_GLSL
+
+const float GI_START = 1.0;  // voxels from the apex to the first sample
+const float GI_OPAQUE = 0.98; // as good as 1
+
+struct GiCone {
+    vec4 light;      // rgb premultiplied radiance, a opacity
+    float occlusion; // opacity, what is far counting less: 1 / (1 + lambda t)
+    float steps;     // samples taken, for the picture of them
+};
+
+// Radiance of the sky as cones see it.
+#define GI_SKY(frame, direction)                                                                   \
+    (mix((frame).sky_horizon.rgb, (frame).sky_zenith.rgb, sqrt(clamp((direction).y, 0.0, 1.0))) *  \
+     gi.scale.y)
+
+// Voxel of the finest cascade that has room at a place, m.
+float gi_voxel_at(vec3 world) {
+    if (GI_CASCADES == 1u) return gi_flow.origin[0].w;
+    return gi_flow.origin[min(gi_cascade(world, gi_flow.origin[0].w), GI_CASCADES - 1u)].w;
+}
+
+// Length in m at which a ray leaves the box of the coarsest cascade; not positive if it misses it.
+float gi_exit(vec3 start, vec3 direction) {
+    vec4 origin = gi_flow.origin[GI_CASCADES - 1u];
+    vec3 extent = vec3(gi_flow.dims.xyz) * origin.w;
+    vec3 safe = mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
+    vec3 inverse = 1.0 / safe, to_low = (origin.xyz - start) * inverse;
+    vec3 to_high = to_low + extent * inverse;
+    vec3 near = min(to_low, to_high), far = max(to_low, to_high);
+    float enter = max(max(near.x, near.y), near.z), leave = min(min(far.x, far.y), far.z);
+    return enter < leave && enter <= 0.0 ? leave : 0.0;
+}
+
+void gi_cone_add(inout GiCone cone, vec4 s, float falloff) {
+    float seen = 1.0 - cone.light.a;
+    cone.light += s * seen;
+    cone.occlusion += s.a * seen * falloff;
+    cone.steps += 1.0;
+}
+
+// What the loops stopped for counts as opaque: a uniformly lit opaque wall keeps its radiance.
+void gi_cone_end(inout GiCone cone) {
+    float whole = cone.light.a > GI_OPAQUE ? 1.0 / cone.light.a : 1.0;
+    cone.light *= whole;
+    cone.light.rgb = gi_decode(cone.light).rgb;
+}
+
+// Undecoded levels of the atlas at q (0..1 of the box), with one cascade: y and z end at the
+// picture's border, where the sampler clamps; blocks lie side by side along x.
+vec4 gi_cone_atlas(vec3 q, float level, GiAxes axes) {
+    if (GI_DIRECTIONS == 1u) return gi_atlas_fetch(q, level);
+    float half_texel =
+        0.5 * uintBitsToFloat(uint(ceil(level) + 127.0) << 23) / float(gi.atlas.x);
+    vec3 x = (axes.block + clamp(q.x, half_texel, 1.0 - half_texel)) * (1.0 / 6.0);
+    return gi_atlas_fetch(vec3(x.x, q.yz), level) * axes.weight.x +
+           gi_atlas_fetch(vec3(x.y, q.yz), level) * axes.weight.y +
+           gi_atlas_fetch(vec3(x.z, q.yz), level) * axes.weight.z;
+}
+
+GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float end) {
+    GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
+    GiAxes axes = gi_axes(direction);
+    float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half, factor = gi_flow.cone.y;
+    float lambda = gi_flow.strength.y * voxel, last_level = float(gi.atlas.w) - 1.0;
+    vec3 per_voxel = 1.0 / vec3(gi.dims.xyz);
+    vec3 q = gi_to_voxels(start, 0u) * per_voxel, dq = direction * per_voxel;
+    if (GI_FACES == 0u) {
+        float narrow_end = min(end, 1.0 / width), near_end = min(end, 2.0 / width);
+        for (; t < narrow_end && cone.light.a < GI_OPAQUE; t += factor)
+            gi_cone_add(cone, textureLod(gi_base, q + dq * t, 0.0), 1.0 / (1.0 + lambda * t));
+        for (; t < near_end && cone.light.a < GI_OPAQUE;) {
+            vec3 at = q + dq * t;
+            float diameter = max(width * t, 1.0), share = log2(diameter);
+            if (GI_NEAREST_MIPS != 0u) share = floor(share + 0.5);
+            vec4 s = mix(textureLod(gi_base, at, 0.0), gi_cone_atlas(at, 0.0, axes), share);
+            gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
+            t += diameter * factor;
+        }
+    }
+    while (t < end && cone.light.a < GI_OPAQUE) {
+        float diameter = max(width * t, 1.0);
+        float level = min(log2(diameter) - gi_atlas_lod(), last_level);
+        if (GI_NEAREST_MIPS != 0u) level = floor(level + 0.5);
+        gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
+        t += diameter * factor;
+    }
+    gi_cone_end(cone);
+    return cone;
+}
+
+// Through several cascades: from the finest that has room for the cone where it is to the coarsest.
+// Lengths in m.
+GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, float end) {
+    GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
+    GiAxes axes = gi_axes(direction);
+    float width = 2.0 * tan_half, factor = gi_flow.cone.y, lambda = gi_flow.strength.y;
+    while (t < end && cone.light.a < GI_OPAQUE) {
+        vec3 at = start + direction * t;
+        uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
+        float voxel = gi_flow.origin[cascade].w, diameter = max(width * t, voxel);
+        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, log2(diameter / voxel), axes);
+        gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
+        t += diameter * factor;
+    }
+    float whole = cone.light.a > GI_OPAQUE ? 1.0 / cone.light.a : 1.0;
+    cone.light *= whole;
+    return cone;
+}
+
+// start: world; direction: unit; first: length of the first sample in voxels of the start's cascade
+// (GI_START); reach: m, nothing is traced if it is not positive.
+GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
+    float end = min(reach, gi_exit(start, direction));
+    if (GI_CASCADES == 1u) {
+        float voxel = gi_flow.origin[0].w;
+        return gi_cone_single(start, direction, tan_half, first, end / voxel);
+    }
+    return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end);
+}
+
+// The level's longest distance, m.
+float gi_reach() { return gi_flow.cone.z > 0.0 ? gi_flow.cone.z : 1e9; }
+
+// Six cones over the hemisphere about a normal: one along it, five 60 degrees away and 72 degrees
+// apart; shares 1/4 and five of 3/20 (cosine weights: pi/4 and 3 pi/20 over pi).
+//
+// The five hang on a vector that no wall is likely to be perpendicular to: two almost equal normals
+// give almost equal cones, except close to that vector itself.
+const vec3 GI_TANGENT_POLE = vec3(0.267261242, 0.534522484, 0.801783726);
+
+struct GiHemisphere {
+    vec3 light;       // mean radiance, cosine weighted: irradiance / pi
+    float visibility; // 1 - mean occlusion
+    float steps;
+};
+// count: cones, 6, or 0 for none; sky: rgb radiance of zenith and horizon, or 0.
+GiHemisphere gi_hemisphere(vec3 start, vec3 normal, float first, float reach, uint count,
+                           vec3 zenith, vec3 horizon) {
+    GiHemisphere sum = GiHemisphere(vec3(0.0), 1.0, 0.0);
+    vec3 u = cross(normal, GI_TANGENT_POLE);
+    u *= inversesqrt(max(dot(u, u), 1e-12));
+    vec3 v = cross(normal, u);
+    vec2 turn = vec2(1.0, 0.0);
+    float tan_half = gi_flow.cone.x;
+    for (uint i = 0u; i < count; i++) {
+        bool is_first = i == 0u;
+        vec3 around = u * turn.x + v * turn.y;
+        vec3 direction = is_first ? normal : normal * 0.5 + around * 0.866025404;
+        float share = is_first ? 0.25 : 0.15;
+        // The first of the five starts at turn 0: no turn after the one along the normal.
+        const vec2 step = vec2(0.309016994, 0.951056516);
+        vec2 turned = vec2(turn.x * step.x - turn.y * step.y, turn.x * step.y + turn.y * step.x);
+        turn = is_first ? turn : turned;
+        GiCone cone = gi_cone(start, direction, tan_half, first, reach);
+        vec3 sky = mix(horizon, zenith, sqrt(clamp(direction.y, 0.0, 1.0)));
+        sum.light += (cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0)) * share;
+        sum.visibility -= cone.occlusion * share;
+        sum.steps += cone.steps;
+    }
+    sum.visibility = clamp(sum.visibility, 0.0, 1.0);
+    return sum;
+}
+#endif

@@ -1,0 +1,93 @@
+// gi_screen.glsl: indirect light of one pixel, for gi_trace.comp and for gi_compose.frag where traced
+// pixels do not fit.
+#ifndef GI_SCREEN_GLSL
+#define GI_SCREEN_GLSL
+#define GI_SCREEN
+#include "gbuffer.glsl"
+#include "gi.glsl"
+#include "gi_cones.glsl"
+
+layout(set = 2, binding = BINDING_GI_IRRADIANCE) uniform sampler3D gi_irradiance;
+
+struct GiPixel {
+    vec4 diffuse;  // rgb without albedo, w ambient visibility
+    vec4 specular; // rgb without the specular colour, w 1 = traced
+};
+
+// Colour that a mirrored cone counts with. The lobe's share of a uniform light: its normalised form
+// is (n + 8) / (8 pi) (Akenine-Moller et al., Real-Time Rendering, 3rd ed., eq. 7.49); a mirror's
+// half vector is the normal, so that is where Fresnel's term is taken.
+vec3 gi_specular_color(Surface s) {
+    float whole = min(s.lobes.y * (8.0 * PI) / (s.power + 8.0), 1.0);
+    vec3 color = s.specular * (whole / max(s.lobes.y, 1e-6));
+    if ((BRDF_MASK & BRDF_MASK_FRESNEL) != 0u) {
+        float x = 1.0 - clamp(s.n_dot_v, 0.0, 1.0), x2 = x * x;
+        color += (vec3(whole) - color) * (x2 * x2 * x * s.fresnel);
+    }
+    return color;
+}
+
+bool gi_has_specular() {
+    return (GI_FEATURES & GI_FEATURE_SPECULAR) != 0u && (BRDF_MASK & 14u) != 0u;
+}
+
+// tan of half the aperture of the cone that stands for a highlight. A Phong lobe of power n keeps
+// 1 - 0.244 of its light within cos^(n + 1) = 0.244 (Uludag 2014, "Hi-Z screen-space cone-traced
+// reflections", GPU Pro 5); a lobe about the half vector is a Phong lobe of a quarter of the power
+// about the mirrored view (Lengyel; the half vector turns half as fast).
+float gi_specular_tan(Surface s) {
+    float power = uint(s.lobes.x) == LOBE_PHONG ? s.power : 0.25 * s.power;
+    float cosine2 = exp2(2.0 * log2(0.244) / (power + 1.0));
+    return max(sqrt(max(1.0 - cosine2, 0.0) / cosine2), gi.specular.x);
+}
+
+// Where cones start: offset voxels off the surface.
+vec3 gi_start(GbufferPixel g) {
+    return g.position + g.normal * (gi.cone.w * gi_voxel_at(g.position));
+}
+
+// Length of a cone's first sample, in voxels. Dithered: up to one more step, by a fixed pattern of
+// 4 x 4 (Bayer 1973), so that samples of neighbouring pixels lie at different lengths.
+float gi_first(uvec2 pixel) {
+    if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u) return GI_START;
+    uint x = pixel.x ^ pixel.y, y = pixel.y;
+    uint rank = (x & 1u) << 3 | (y & 1u) << 2 | (x & 2u) | (y & 2u) >> 1;
+    float step = max(2.0 * gi_flow.cone.x * GI_START, 1.0) * gi_flow.cone.y;
+    return GI_START + step * (float(rank) + 0.5) * (1.0 / 16.0);
+}
+
+// is_on: false traces nothing (loops of no rounds: a branch would not save the work).
+GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, bool is_on) {
+    GiPixel result = GiPixel(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0));
+    vec3 zenith = frame.sky_zenith.rgb * gi.scale.y, horizon = frame.sky_horizon.rgb * gi.scale.y;
+    vec3 start = gi_start(g);
+    float first = gi_first(pixel);
+    if (GI_DIFFUSE == 1u || (GI_FEATURES & GI_FEATURE_AO) != 0u) {
+        GiHemisphere sum =
+            gi_hemisphere(start, g.normal, first, gi_reach(), is_on ? 6u : 0u, zenith, horizon);
+        if (GI_DIFFUSE == 1u) result.diffuse.rgb = sum.light;
+        if ((GI_FEATURES & GI_FEATURE_AO) != 0u)
+            result.diffuse.a = mix(gi.strength.z, 1.0, sum.visibility);
+    }
+    if (gi_has_specular()) {
+        vec3 color = gi_specular_color(s);
+        bool shines = is_on && max(max(color.r, color.g), color.b) > 0.0;
+        vec3 mirrored = reflect(-s.view, g.normal);
+        // Interpolated normals may mirror the view into the surface.
+        mirrored = normalize(mirrored + g.normal * max(-dot(mirrored, g.normal), 0.0) * 2.0);
+        GiCone cone =
+            gi_cone(start, mirrored, gi_specular_tan(s), first, shines ? gi_reach() : 0.0);
+        vec3 sky = mix(horizon, zenith, sqrt(clamp(mirrored.y, 0.0, 1.0)));
+        vec3 light = cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0);
+        result.specular = shines ? vec4(light, 1.0) : vec4(0.0);
+    }
+    return result;
+}
+
+// --- Which pixel a traced one stands for ---
+
+ivec2 gi_traced_pixel(ivec2 traced) {
+    ivec2 pixel = (traced << GI_RESOLUTION) + ((1 << GI_RESOLUTION) >> 1);
+    return min(pixel, ivec2(frame.viewport.xy) - 1);
+}
+#endif
