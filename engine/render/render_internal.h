@@ -218,6 +218,8 @@ typedef struct LayoutRow {
 } LayoutRow;
 extern const LayoutRow layout_table[LAYOUT_COUNT];
 u32 layout_bytes(const LayoutRow *row); // a pixel, all targets, without the depth buffer
+// Of this packet's G-buffer: the settings', but lean where it is drawn for GI alone.
+GbufferLayout layout_of(const Packet *packet);
 
 // --- Assets on the device (render_assets.c) ---
 
@@ -270,6 +272,7 @@ typedef struct GiState {
     bool is_warm;     // every pass has run
     // What this packet asks for, decided once (gi_begin): see the passes' needed functions.
     bool is_on, is_cold; // is_cold: nothing that is spread over frames may be left over
+    bool is_fresh;       // nothing was ever written to the volumes
     bool voxelise_static, voxelise_dynamic, relight, trace_probes;
     u32 voxel_shadows, traced_shadows; // bits: SPEC_GI_VISIBILITY, SPEC_GI_TRACED
 } GiState;
