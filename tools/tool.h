@@ -30,6 +30,7 @@ typedef struct ToolCommand {
     X(record)                                                                                      \
     X(replay)                                                                                      \
     X(compare)                                                                                     \
+    X(reference)                                                                                   \
     X(import)                                                                                      \
     X(schema)                                                                                      \
     X(bench)
