@@ -134,7 +134,8 @@ static const char *check_frame(const Packet *packet) {
     if (frame->counts3[0] > frame->counts[0] || frame->counts3[1] > frame->counts[1])
         return "more lights with a highlight than lights";
     if (packet->directionals.count > DIRECTIONALS_CAP ||
-        frame->counts[2] != packet->directionals.count)
+        frame->counts[2] > packet->directionals.count ||
+        (!packet->gi.params.enabled && frame->counts[2] != packet->directionals.count))
         return "directional light count out of range";
     if (packet->materials.count > MATERIALS_CAP || frame->counts2[0] != packet->materials.count)
         return "material count out of range";

@@ -105,7 +105,8 @@ typedef enum PacketFlags {
     X(material_bindings, PacketMaterial) /* same count */                                          \
     X(lights, LightRecord) /* by class (LIGHT_CLASSES), then one dummy that lights nothing */      \
     X(spots, SpotRecord)                                                                           \
-    X(directionals, DirectionalRecord)                                                             \
+    X(directionals, DirectionalRecord) /* frame.counts[2] of the screen, then those of the      */ \
+                                       /* voxels alone: the screen has them as traced_lights    */ \
     X(cells, CellRecord)    /* light grid: tiles or clusters, from the upper left */               \
     X(light_indices, u32)   /* into lights: the cells' lists, then the hierarchy's order, if any */ \
     X(grid_nodes, GridNode) /* GPU clusters, many lights: hierarchy over that order */             \
@@ -138,17 +139,20 @@ typedef struct PacketCounts {
     u32 cell_count, cell_light_max, light_index_count; // of lists made on the CPU
     u32 cell_fallbacks; // cells that use the list of all lights because memory ran out
     u32 gi_lights, gi_light_indices; // local lights of the voxels, entries of their lists
+    u32 lights_traced;               // local lights of the view among traced_lights
 } PacketCounts;
 
 // Global illumination as this packet wants it; params.enabled = 0: its sections are empty. What the
 // voxels show hangs on these keys (hashes of contents) alone: as long as a key stays, so does what
-// was made under it. The flags are raised by change stamps, and whenever a key changes so is its
-// flag; a change that leaves no trace (there and back, a light that is off) raises a flag alone.
+// was made under it. The flags are raised by change stamps, and whenever surface_key or light_key
+// differs from the previous packet's; a change that leaves no trace (there and back, a light that
+// is off) raises a flag alone. Of the camera there is nothing in the keys but the places of nested
+// grids and of the shadow map, which both move in steps.
 typedef struct PacketGi {
-    u64 static_key;  // grid, static instances, their meshes and materials
+    u64 static_key;  // grid, static instances, their meshes and materials, emission too
     u64 dynamic_key; // dynamic ones
-    u64 light_key;   // lights, emission, and parameters of lighting
-    u64 reserved;
+    u64 light_key;   // lights, emission, parameters of lighting; the shadow map if voxels read it
+    u64 surface_key; // both first ones without emission: what PACKET_REVOXELISE goes by
     GiParams params;
     GiRecord record;
 } PacketGi;
@@ -184,6 +188,12 @@ typedef struct PacketSizes {
 // Zeroed block in the arena with the sections laid out.
 Packet *packet_allocate(Arena *arena, const PacketSizes *sizes);
 #define PACKET_WRITE(packet, section, Type) ((Type *)((u8 *)(packet) + (packet)->section.offset))
+
+// Does a shadow map tell what directional 0 of the screen lights? (Voxels may be alone in having one.)
+static inline bool packet_screen_shadow(const Packet *packet) {
+    return packet->shadow_size_px > 0 && packet->frame.counts[2] > 0 &&
+           PACKET_DATA(packet, directionals, DirectionalRecord)[0].color[3] > 0.0f;
+}
 
 // Is this block from a stranger safe to render? Checks magic, version, size, every section's range
 // and alignment, every index (meshes < mesh_count, levels of detail, textures < texture_count,

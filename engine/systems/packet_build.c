@@ -6,6 +6,7 @@
 // Everything is collected in scratch memory first, then the packet is laid out once, and the large
 // arrays (instances, light lists) are written right into it. The same world and desc give the same
 // bytes with any number of threads.
+#include "gi.h"
 #include "packet_lists.h"
 #include "occlusion.h"
 #include "../base/clock.h"
@@ -54,10 +55,11 @@ static void set_vec4(f32 *out, f32 x, f32 y, f32 z, f32 w) {
 }
 
 static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const PacketView *view,
-                        const LightParts *lights, const Environment *e) {
+                        const LightParts *lights, const GiParams *gi, const Environment *e) {
     Vec3 right = vec3_scale(view->right, view->tan_x), up = vec3_scale(view->up, view->tan_y);
     Vec3 p = view->position, f = view->forward;
     f32 width = (f32)desc->width_px, height = (f32)desc->height_px, glow = e->ambient_intensity;
+    if (gi->enabled) glow *= gi->ambient; // bounced light takes its place
     // The shader's clock wraps once an hour: more digits would only make it step.
     f32 time_s = (f32)(desc->world->tick % (3600u * TICK_RATE)) / TICK_RATE;
     memcpy(frame->view_projection, view->view_projection.m, sizeof frame->view_projection);
@@ -80,7 +82,7 @@ static void write_frame(FrameRecord *frame, const PacketBuildDesc *desc, const P
     frame->vertex_lighting[0] = lights->vertex_lighting;
     frame->counts[0] = lights->point_count;
     frame->counts[1] = lights->spot_count;
-    frame->counts[2] = lights->directional_count;
+    frame->counts[2] = lights->screen_directional_count;
     frame->counts2[2] = lights->point_count + lights->spot_count;
     frame->counts2[3] = desc->world->tick;
     frame->counts3[0] = lights->point_highlights;
@@ -120,31 +122,6 @@ static f32 coding_reach(const DrawableTable *d, const DrawLists *draws, const Pa
     return reach;
 }
 
-// ---- flags ----
-
-// Stamps at or after the previous packet's: an edit between that packet and the next tick carries
-// the same stamp as the packet saw.
-static u32 find_flags(const World *world, u32 since) {
-    const DrawableTable *drawables = WORLD_TABLE(world, Drawable, drawable);
-    const InstanceTable *instances = WORLD_TABLE(world, Instance, instance);
-    if (since == 0) return PACKET_REVOXELISE | PACKET_RELIGHT;
-    u32 flags = 0;
-    if (table_changed_since(&WORLD_TABLE(world, Light, light)->table, since) ||
-        table_changed_since(&WORLD_TABLE(world, Material, material)->table, since))
-        flags |= PACKET_RELIGHT;
-    // Rows that came or went, and modes that were switched, do not tell what they were before.
-    if (drawables->table.structure_stamp >= since || table_changed_since(&instances->table, since))
-        return flags | PACKET_REVOXELISE;
-    if (!table_changed_since(&drawables->table, since)) return flags;
-    for (u32 row = 0; row < drawables->table.count; row++) {
-        if (drawables->table.stamp[row] < since) continue;
-        u32 owner = table_row(&instances->table, drawables->owner[row]);
-        if (owner != ROW_NONE && instances->voxel_mode[owner] == VOXEL_DYNAMIC)
-            return flags | PACKET_REVOXELISE;
-    }
-    return flags;
-}
-
 // ---- culling ----
 
 typedef struct RowList {
@@ -165,8 +142,8 @@ static u32 hide_drawables(const World *world, const OcclusionBuffer *occlusion, 
                           Arena *scratch) {
     const DrawableTable *d = WORLD_TABLE(world, Drawable, drawable);
     u32 before = list->count;
-    list->count = occlusion_cull(occlusion, d->bounds_x, d->bounds_y, d->bounds_z,
-                                 d->bounds_radius, list->rows, list->count, scratch);
+    list->count = occlusion_cull(occlusion, d->bounds_x, d->bounds_y, d->bounds_z, d->bounds_radius,
+                                 list->rows, list->count, scratch);
     return before - list->count;
 }
 
@@ -176,6 +153,7 @@ typedef struct Parts {
     PacketView view;
     OcclusionBuffer *occlusion; // NULL = there are no occluders, or they are switched off
     u32 drawables_occluded;
+    GiParts gi;
     LightParts lights;
     FrameRecord frame;
     LightLists lists;
@@ -251,7 +229,8 @@ static void write_shadow(Packet *packet, const Parts *parts, const Environment *
     // degrees; the bias takes half a texel off the rest, in units of the depth range.
     set_vec4(packet->frame.shadow, 1.0f / (f32)parts->shadow_size_px, 1.5f * fit->texel_m,
              environment->shadow_distance, 0.5f * fit->texel_m / (fit->front - fit->rear));
-    PACKET_WRITE(packet, directionals, DirectionalRecord)[0].color[3] = 1.0f;
+    PACKET_WRITE(packet, directionals, DirectionalRecord)
+    [parts->lights.shadow_index].color[3] = 1.0f;
     packet->shadow_key = hash_shadow(packet, parts, store_stamp);
 }
 
@@ -266,6 +245,27 @@ static void write_texts(Packet *packet, const PacketBuildDesc *desc) {
         memcpy(characters + offset, text->text, length);
         offset += length;
     }
+}
+
+static void write_gi(Packet *packet, const PacketBuildDesc *desc, const Parts *parts) {
+    const GiParts *gi = &parts->gi;
+    const DrawLists *still = &gi->draws[0], *moving = &gi->draws[1];
+    packet->gi.params = gi->params;
+    packet->gi.record = gi->record;
+    if (!gi->params.enabled) return;
+    packet->gi.record.counts[0] = packet->traced_lights.count;
+    packet->gi.record.counts[1] = packet->gi_instances.count;
+    InstanceRecord *instances = PACKET_WRITE(packet, gi_instances, InstanceRecord);
+    packet_write_instances(desc->world, still, instances);
+    packet_write_instances(desc->world, moving, instances + still->row_count);
+    PacketDraw *draws = PACKET_WRITE(packet, gi_dynamic_draws, PacketDraw);
+    memcpy(PACKET_WRITE(packet, gi_static_draws, PacketDraw), still->lists[0],
+           still->counts[0] * sizeof *draws);
+    for (u32 i = 0; i < moving->counts[0]; i++) {
+        draws[i] = moving->lists[0][i];
+        draws[i].first_instance += still->row_count;
+    }
+    gi_write_keys(packet, desc->assets->stamp);
 }
 
 static u32 occluder_texels(const PacketBuildDesc *desc, const OcclusionBuffer *buffer) {
@@ -304,7 +304,12 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
         .cells = parts->lists.cell_count,
         .light_indices = parts->lists.index_count,
         .grid_nodes = parts->lists.node_count,
+        .gi_instances = parts->gi.draws[0].row_count + parts->gi.draws[1].row_count,
+        .gi_static_draws = parts->gi.draws[0].counts[0],
+        .gi_dynamic_draws = parts->gi.draws[1].counts[0],
         .gi_lights = lights->gi_count,
+        .gi_lists = parts->gi.list_count,
+        .traced_lights = lights->traced_count,
         .light_marks = lights->mark_count,
         .occluder_depths = occluder_texels(desc, parts->occlusion),
         .posts = parts->posts.count,
@@ -313,7 +318,6 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     };
     Packet *packet = packet_allocate(out, &sizes);
     packet->tick = desc->world->tick;
-    packet->flags = find_flags(desc->world, desc->last_stamp);
     packet->width_px = desc->width_px;
     packet->height_px = desc->height_px;
     packet->brdf_mask = parts->palette->brdf_mask;
@@ -340,10 +344,15 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
     COPY(spots, SpotRecord, lights->spots);
     COPY(directionals, DirectionalRecord, lights->directionals);
     COPY(gi_lights, GiLightRecord, lights->gi_lights);
+    if (sizes.gi_lists) COPY(gi_lists, u32, parts->gi.lists);
+    COPY(traced_lights, TracedLightRecord, lights->traced);
     COPY(light_marks, PacketLightMark, lights->marks);
     COPY(posts, PacketPost, parts->posts.posts);
 #undef COPY
     write_shadow(packet, parts, environment, desc->assets->stamp);
+    write_gi(packet, desc, parts);
+    packet->flags = gi_find_flags(desc->world, &packet->gi, desc->previous_gi, desc->last_stamp);
+    if (desc->cold) packet->flags |= PACKET_COLD;
     write_texts(packet, desc);
     packet->counts = (PacketCounts){
         .lights_total = lights->total,
@@ -363,9 +372,25 @@ static Packet *write_packet(const PacketBuildDesc *desc, const Parts *parts,
         .drawables_visible = parts->draws.row_count,
         .shadow_casters = parts->shadow.row_count,
         .triangles = parts->draws.triangles,
+        .gi_lights = lights->gi_count,
+        .gi_light_indices = parts->gi.list_index_count,
+        .lights_traced = lights->traced_local,
     };
     write_occluders(packet, parts->occlusion);
     return packet;
+}
+
+static void collect_gi(const PacketBuildDesc *desc, Parts *parts, Arena *scratch) {
+    GiParts *gi = &parts->gi;
+    if (!gi->params.enabled) return;
+    for (u32 i = 0; i < 2; i++)
+        gi->draws[i] = packet_collect_voxelised(desc->world, desc->assets, parts->palette,
+                                                i ? VOXEL_DYNAMIC : VOXEL_STATIC, scratch);
+    GiLists lists =
+        gi_lists_make(&gi->record, parts->lights.gi_lights, parts->lights.gi_count, scratch);
+    gi->lists = lists.words;
+    gi->list_count = lists.count;
+    gi->list_index_count = lists.index_count;
 }
 
 static f32 lap_ms(f64 *start_ms) {
@@ -384,8 +409,8 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
     f64 clock_ms = clock_now_ms();
     PacketBuildTimes laps = {0};
     Environment environment = environment_read(desc.world);
-    Parts parts = {
-        .view = packet_make_view(desc.world, desc.camera, desc.width_px, desc.height_px)};
+    Parts parts = {.view =
+                       packet_make_view(desc.world, desc.camera, desc.width_px, desc.height_px)};
     for (u32 i = 0; i < desc.text_count; i++)
         parts.character_count += (u32)strlen(desc.texts[i].text);
 
@@ -393,21 +418,22 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
     if (desc.settings.occlusion) {
         const OccluderPolygons *polygons =
             desc.light_manager ? light_manager_polygons(desc.light_manager) : NULL;
-        parts.occlusion =
-            occlusion_draw(desc.world, desc.assets, polygons, &parts.view, scratch);
+        parts.occlusion = occlusion_draw(desc.world, desc.assets, polygons, &parts.view, scratch);
     }
     laps.occluders_ms = lap_ms(&clock_ms);
     RowList visible = cull_drawables(
         desc.world, desc.settings.mesh_culling ? &parts.view.frustum : &everywhere, scratch);
     if (desc.settings.mesh_culling)
-        parts.drawables_occluded =
-            hide_drawables(desc.world, parts.occlusion, &visible, scratch);
+        parts.drawables_occluded = hide_drawables(desc.world, parts.occlusion, &visible, scratch);
     laps.cull_ms = laps.occluders_ms + lap_ms(&clock_ms);
 
-    parts.lights = packet_collect_lights(&desc, &parts.view, parts.occlusion, scratch);
+    parts.gi = gi_begin_packet(&desc, &parts.view);
+    laps.gi_ms = lap_ms(&clock_ms);
+    parts.lights =
+        packet_collect_lights(&desc, &parts.view, parts.occlusion, &parts.gi.params, scratch);
     laps.lights_ms = lap_ms(&clock_ms);
     memcpy(laps.light_stage_ms, parts.lights.stage_ms, sizeof laps.light_stage_ms);
-    write_frame(&parts.frame, &desc, &parts.view, &parts.lights, &environment);
+    write_frame(&parts.frame, &desc, &parts.view, &parts.lights, &parts.gi.params, &environment);
     parts.posts = packet_collect_posts(&desc, &parts.view, scratch);
     parts.palette = packet_collect_materials(desc.world, scratch);
     parts.view.vertex_lighting = parts.lights.vertex_lighting;
@@ -427,6 +453,8 @@ const Packet *packet_build(const PacketBuildDesc *given, Arena *out, Arena *scra
                            parts.shadow.rows, parts.shadow.row_count);
     }
     laps.pack_ms = lap_ms(&clock_ms);
+    collect_gi(&desc, &parts, scratch);
+    laps.gi_ms += lap_ms(&clock_ms);
     parts.lists = light_lists_plan(&parts.frame, parts.lights.lights, parts.lights.spots,
                                    &desc.settings, parts.draws.counts[ALPHA_BLEND] > 0, scratch);
     laps.grid_ms = lap_ms(&clock_ms);

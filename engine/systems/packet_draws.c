@@ -4,6 +4,8 @@
 // palette that G-buffers index. Called by: packet_build (view, and again for the shadow map). Does
 // not: cull, or know how a draw is recorded.
 //
+// Draws of what is voxelised have nothing to do with the view: by mesh, material, entity.
+//
 // Order: alpha mode, band of distance, material, level of detail, mesh, entity; blended ones far to
 // near. It comes from sorting 64-bit keys, so it does not depend on the order of rows. The bands
 // are there because a pixel that something nearer covers already is not shaded again.
@@ -179,7 +181,10 @@ enum {
     KEY_VERTEX = KEY_SURFACE + 9,
     KEY_BAND = KEY_VERTEX + 2,
     KEY_ALPHA = ENTITY_INDEX_BITS + 34,
-    BAND_MAX = 15
+    BAND_MAX = 15,
+    // What is voxelised: entity index, material, mesh.
+    VOXEL_KEY_MATERIAL = ENTITY_INDEX_BITS,
+    VOXEL_KEY_MESH = VOXEL_KEY_MATERIAL + 9
 };
 _Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9 && MESH_LODS_CAP <= 4 &&
                    KEY_BAND + 4 <= KEY_ALPHA && KEY_ALPHA + 2 <= 64,
@@ -322,6 +327,52 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
             run = this_run;
         }
         draw->instance_count++;
+    }
+    return lists;
+}
+
+// ---- what is voxelised ----
+
+DrawLists packet_collect_voxelised(const World *world, const AssetStore *assets,
+                                   const MaterialPalette *palette, u32 mode, Arena *scratch) {
+    const DrawableTable *d = WORLD_TABLE(world, Drawable, drawable);
+    const InstanceTable *instances = WORLD_TABLE(world, Instance, instance);
+    const MaterialTable *materials = WORLD_TABLE(world, Material, material);
+    SortItem *items = ARENA_PUSH(scratch, SortItem, d->table.count);
+    SortItem *spare = ARENA_PUSH(scratch, SortItem, d->table.count);
+    DrawLists lists = {0};
+    MaterialMemo memo = {ENTITY_NONE, ROW_NONE};
+    for (u32 row = 0; row < d->table.count; row++) {
+        // Hidden ones have no sphere.
+        if (d->mesh[row] == 0 || d->mesh[row] >= assets->mesh_count ||
+            !(d->bounds_radius[row] >= 0.0f))
+            continue;
+        u32 owner = table_row(&instances->table, d->owner[row]);
+        if (owner == ROW_NONE || instances->voxel_mode[owner] != mode) continue;
+        u32 place = material_row(materials, d->material[row], &memo);
+        u32 material = place == ROW_NONE ? palette->missing : palette->index_of_row[place];
+        if (palette->bindings[material].alpha_mode == ALPHA_BLEND) continue;
+        u64 key = ENTITY_INDEX(d->table.entity[row]) |
+                  ((u64)d->mesh[row] << VOXEL_KEY_MESH | (u64)material << VOXEL_KEY_MATERIAL);
+        items[lists.row_count++] = (SortItem){key, row, (u16)material, 0};
+        lists.triangles += assets->meshes[d->mesh[row]].index_count / 3;
+    }
+    items = radix_sort(items, spare, lists.row_count);
+
+    lists.rows = ARENA_PUSH(scratch, u32, lists.row_count);
+    lists.material = ARENA_PUSH(scratch, u16, lists.row_count);
+    lists.vertex_share = ARENA_PUSH(scratch, f32, lists.row_count);
+    PacketDraw *draws = ARENA_PUSH(scratch, PacketDraw, lists.row_count);
+    lists.lists[0] = draws;
+    for (u32 i = 0; i < lists.row_count; i++) {
+        lists.rows[i] = items[i].row;
+        lists.material[i] = items[i].material;
+        bool same =
+            i > 0 && items[i].key >> VOXEL_KEY_MATERIAL == items[i - 1].key >> VOXEL_KEY_MATERIAL;
+        if (!same)
+            draws[lists.counts[0]++] = (PacketDraw){
+                .mesh = d->mesh[items[i].row], .material = items[i].material, .first_instance = i};
+        draws[lists.counts[0] - 1].instance_count++;
     }
     return lists;
 }

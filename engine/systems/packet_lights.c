@@ -19,10 +19,12 @@ typedef struct LightCull {
     const PacketView *view;
     const OcclusionBuffer *occlusion; // NULL = nothing hides
     const LightTable *light;
+    const GiParams *gi;
     LightCandidates candidates;
     LightDecision decision;
     LightManagerConfig config;
-    u8 *seen; // [rows] 1 = inside the view, 2 = and not hidden
+    u8 *seen;   // [rows] 1 = inside the view, 2 = and not hidden
+    u8 *traced; // [rows] 1 = its shadow on the screen comes from the voxels
     // Pairs, in the order of their first partners' rows.
     MergedLight *merged;
     u32 *merged_row; // first partner
@@ -182,7 +184,9 @@ static ShownLight *gather_shown(LightCull *cull, LightParts *parts, u32 *count, 
     ShownLight *shown = ARENA_PUSH(scratch, ShownLight, rows + cull->merged_count);
     *count = 0;
     for (u32 row = 0; row < rows; row++) {
-        if (cull->seen[row] == 2 && d->weight[row] > 0.0f)
+        if (cull->seen[row] == 2 && d->weight[row] > 0.0f && cull->traced[row])
+            parts->traced_local++;
+        else if (cull->seen[row] == 2 && d->weight[row] > 0.0f)
             shown[(*count)++] = (ShownLight){
                 row, UINT32_MAX, d->weight[row],
                 highlight_of(cull, vec3(c->x[row], c->y[row], c->z[row]), c->radius[row])};
@@ -231,24 +235,6 @@ static SpotRecord make_spot(Vec3 direction, f32 inner_deg, f32 outer_deg) {
     // An inner angle at or beyond the outer one is a hard edge.
     return (SpotRecord){{direction.x, direction.y, direction.z, outer},
                         {1.0f / MAX(inner - outer, 1e-4f), 0.0f, 0.0f, 0.0f}};
-}
-
-// A light as voxels see it: full brightness, wherever the view is.
-static GiLightRecord gi_record(const LightCull *cull, u32 row) {
-    const LightTable *light = cull->light;
-    LightRecord record = row_record(cull, row, 1.0f, 1.0f);
-    bool is_spot = light->kind[row] == LIGHT_SPOT;
-    u32 shadow = light->voxel_shadow[row]; // auto = none: only directional lights have maps
-    GiLightRecord out = {.direction = {0, 0, -1, -2}, .extra = {0, is_spot ? 1.0f : 0.0f, 0, 0}};
-    memcpy(out.position, record.position, sizeof out.position);
-    memcpy(out.color, record.color, sizeof out.color);
-    out.color[3] = shadow > 0 ? (f32)(shadow - 1) : (f32)VOXEL_SHADOW_NONE;
-    if (!is_spot) return out;
-    SpotRecord spot = make_spot(vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]),
-                                light->inner_angle[row], light->outer_angle[row]);
-    memcpy(out.direction, spot.direction, sizeof out.direction);
-    out.extra[0] = spot.edge[0];
-    return out;
 }
 
 static SpotRecord shown_spot(const LightCull *cull, const ShownLight *shown) {
@@ -354,12 +340,77 @@ static void write_marks(const LightCull *cull, LightParts *parts, const ShownLig
 
 static bool wants_marks(u32 view) { return view >= VIEW_LIGHT_RECTS && view <= VIEW_LIGHT_LODS; }
 
-// ---- GI, directional lights ----
+// ---- GI ----
+
+static bool wants_tracing(const LightTable *light, u32 row) {
+    return light->screen_shadow[row] == SCREEN_SHADOW_CONE ||
+           light->screen_shadow[row] == SCREEN_SHADOW_VOLUME;
+}
+
+static bool is_lit(const LightCull *cull, u32 row) {
+    const LightCandidates *c = &cull->candidates;
+    if (cull->light->kind[row] != LIGHT_DIRECTIONAL) return c->radius[row] >= 0.0f;
+    f32 r = c->r[row], g = c->g[row], b = c->b[row];
+    return (r != 0.0f || g != 0.0f || b != 0.0f) && fabsf(r + g + b) < 1e30f;
+}
+
+// The first of the level's, in row order, wherever the view is: none changes as the view turns.
+static void mark_traced(LightCull *cull) {
+    const LightTable *light = cull->light;
+    u32 count = 0, dropped = 0;
+    if (!cull->gi->enabled || !cull->gi->cone_shadows) return;
+    for (u32 row = 0; row < light->table.count; row++) {
+        if (!wants_tracing(light, row) || !is_lit(cull, row)) continue;
+        if (count == GI_TRACED_CAP)
+            dropped++;
+        else
+            cull->traced[row] = 1, count++;
+    }
+    static bool told;
+    if (dropped > 0 && !told)
+        LOG(RENDER_LIMIT, "%u lights beyond the first %u have no shadow from the voxels", dropped,
+            GI_TRACED_CAP);
+    told |= dropped > 0;
+}
+
+// has_map: the light owns the shadow map. Where there is none, who asked for one gets rays.
+static f32 voxel_shadow(const LightCull *cull, u32 row, bool has_map) {
+    u32 word = cull->light->voxel_shadow[row];
+    if (word == 0) // auto
+        return (f32)(has_map                           ? VOXEL_SHADOW_MAP
+                     : wants_tracing(cull->light, row) ? VOXEL_SHADOW_RAY
+                                                       : VOXEL_SHADOW_NONE);
+    u32 shadow = MIN(word - 1, VOXEL_SHADOW_SOFT_RAY);
+    return (f32)(shadow == VOXEL_SHADOW_MAP && !has_map ? VOXEL_SHADOW_RAY : shadow);
+}
+
+// A light as voxels see it: full brightness, wherever the view is.
+static GiLightRecord gi_record(const LightCull *cull, u32 row) {
+    const LightTable *light = cull->light;
+    const LightCandidates *c = &cull->candidates;
+    f32 kind = (f32)MIN(light->kind[row], LIGHT_DIRECTIONAL);
+    GiLightRecord out = {
+        .color = {c->r[row], c->g[row], c->b[row], voxel_shadow(cull, row, false)},
+        .direction = {light->dir_x[row], light->dir_y[row], light->dir_z[row], -2.0f},
+        .extra = {0.0f, kind, 0.0f, 0.0f}};
+    if (kind == LIGHT_DIRECTIONAL) return out;
+    LightRecord record = row_record(cull, row, 1.0f, 1.0f);
+    memcpy(out.position, record.position, sizeof out.position);
+    if (kind == LIGHT_POINT) {
+        out.direction[0] = out.direction[1] = 0.0f, out.direction[2] = -1.0f;
+        return out;
+    }
+    SpotRecord spot = make_spot(vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]),
+                                light->inner_angle[row], light->outer_angle[row]);
+    memcpy(out.direction, spot.direction, sizeof out.direction);
+    out.extra[0] = spot.edge[0];
+    return out;
+}
 
 static void collect_gi(LightCull *cull, LightParts *parts, Arena *scratch) {
     const LightTable *light = cull->light;
     const f32 *radius = cull->candidates.radius;
-    u32 count = light->table.count;
+    u32 count = cull->gi->enabled ? light->table.count : 0;
     for (u32 row = 0; row < count; row++)
         parts->gi_count += radius[row] >= 0.0f && light->affects_gi[row];
     parts->gi_lights = ARENA_PUSH(scratch, GiLightRecord, parts->gi_count);
@@ -368,28 +419,75 @@ static void collect_gi(LightCull *cull, LightParts *parts, Arena *scratch) {
             parts->gi_lights[i++] = gi_record(cull, row);
 }
 
-// The first that casts a shadow comes first, the others in row order.
-static void collect_directionals(LightParts *parts, const LightTable *light,
-                                 const LightCandidates *candidates) {
-    u32 first = ROW_NONE, dropped = 0;
-    for (u32 pass = 0; pass < 2; pass++) {
+static void collect_traced(LightCull *cull, LightParts *parts, Arena *scratch) {
+    const LightTable *light = cull->light;
+    parts->traced = ARENA_PUSH(scratch, TracedLightRecord, GI_TRACED_CAP);
+    for (u32 row = 0; row < light->table.count; row++) {
+        if (!cull->traced[row]) continue;
+        bool local = light->kind[row] != LIGHT_DIRECTIONAL;
+        f32 weight = local ? cull->decision.weight[row] : 1.0f;
+        if (local && (cull->seen[row] != 2 || !(weight > 0.0f))) continue;
+        TracedLightRecord *out = &parts->traced[parts->traced_count++];
+        const LightCandidates *c = &cull->candidates;
+        Vec3 center = {c->x[row], c->y[row], c->z[row]};
+        f32 opening_rad = DEG_TO_RAD(CLAMP(light->shadow_aperture[row], 0.1f, 90.0f));
+        out->light = gi_record(cull, row);
+        for (u32 i = 0; i < 3; i++) out->light.color[i] *= weight;
+        out->light.color[3] = local ? highlight_of(cull, center, c->radius[row]) : 1.0f;
+        out->shadow[0] = det_tan(0.5f * opening_rad);
+        out->shadow[1] = MAX(light->shadow_softness[row], 0.0f);
+        out->shadow[2] = light->screen_shadow[row] == SCREEN_SHADOW_VOLUME ? 1.0f : 0.0f;
+    }
+}
+
+// ---- directional lights ----
+
+// Which one has the shadow map: the first that casts one on the screen, else the first that only
+// voxels ask.
+static u32 find_mapped(const LightCull *cull) {
+    const LightTable *light = cull->light;
+    u32 for_voxels = ROW_NONE;
+    for (u32 row = 0; row < light->table.count; row++) {
+        if (light->kind[row] != LIGHT_DIRECTIONAL || !is_lit(cull, row)) continue;
+        bool asks = light->voxel_shadow[row] == 1 + VOXEL_SHADOW_MAP && cull->gi->enabled;
+        if (light->casts_shadow[row] && !cull->traced[row]) return row;
+        if (for_voxels == ROW_NONE && cull->traced[row] && asks) for_voxels = row;
+    }
+    return for_voxels;
+}
+
+static void add_directional(const LightCull *cull, LightParts *parts, u32 row, bool has_map) {
+    const LightTable *light = cull->light;
+    const LightCandidates *c = &cull->candidates;
+    f32 shadow = light->affects_gi[row] ? voxel_shadow(cull, row, has_map) : -1.0f;
+    parts->directionals[parts->directional_count++] =
+        (DirectionalRecord){{-light->dir_x[row], -light->dir_y[row], -light->dir_z[row], shadow},
+                            {c->r[row], c->g[row], c->b[row], 0.0f}};
+}
+
+// Those of the screen: the one with the shadow map first, the others in row order. Then, for the
+// voxels, those that the screen traces.
+static void collect_directionals(const LightCull *cull, LightParts *parts) {
+    const LightTable *light = cull->light;
+    u32 dropped = 0, mapped = find_mapped(cull);
+    for (u32 pass = 0; pass < 3; pass++) {
+        if (pass == 2) parts->screen_directional_count = parts->directional_count;
         for (u32 row = 0; row < light->table.count; row++) {
-            if (light->kind[row] != LIGHT_DIRECTIONAL) continue;
-            f32 r = candidates->r[row], g = candidates->g[row], b = candidates->b[row];
-            bool dark = (r == 0.0f && g == 0.0f && b == 0.0f) || !(fabsf(r + g + b) < 1e30f);
-            if (dark || row == first || (pass == 0 && !light->casts_shadow[row])) continue;
+            bool wanted = light->kind[row] == LIGHT_DIRECTIONAL && is_lit(cull, row) &&
+                          (pass == 2) == cull->traced[row] &&
+                          (pass == 2 || (pass == 0) == (row == mapped));
+            if (!wanted || (pass == 2 && !light->affects_gi[row])) continue;
             if (parts->directional_count == DIRECTIONALS_CAP) {
                 dropped++;
                 continue;
             }
-            parts->directionals[parts->directional_count++] = (DirectionalRecord){
-                {-light->dir_x[row], -light->dir_y[row], -light->dir_z[row], 0.0f},
-                {r, g, b, 0.0f}};
-            if (pass == 1) continue;
-            first = row;
-            parts->casts_shadow = true;
-            parts->shadow_direction = vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]);
-            break;
+            if (row == mapped) {
+                parts->casts_shadow = true;
+                parts->shadow_index = parts->directional_count;
+                parts->shadow_direction =
+                    vec3(light->dir_x[row], light->dir_y[row], light->dir_z[row]);
+            }
+            add_directional(cull, parts, row, row == mapped && cull->desc->settings.shadows);
         }
     }
     static bool told;
@@ -400,7 +498,8 @@ static void collect_directionals(LightParts *parts, const LightTable *light,
 }
 
 LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *view,
-                                 const OcclusionBuffer *occlusion, Arena *scratch) {
+                                 const OcclusionBuffer *occlusion, const GiParams *gi,
+                                 Arena *scratch) {
     const LightTable *light = WORLD_TABLE(desc->world, Light, light);
     u32 count = light->table.count, limit = desc->settings.light_limit;
     LightParts parts = {0};
@@ -409,13 +508,16 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
                       .view = view,
                       .occlusion = occlusion,
                       .light = light,
+                      .gi = gi,
                       .candidates = light_candidates(light, desc->settings.light_gain, scratch),
                       .config = light_manager_config(desc->world),
-                      .seen = ARENA_PUSH(scratch, u8, count)};
+                      .seen = ARENA_PUSH(scratch, u8, count),
+                      .traced = ARENA_PUSH(scratch, u8, count)};
     for (u32 row = 0; row < count; row++) {
         if (light->kind[row] == LIGHT_DIRECTIONAL) continue;
         if (parts.total++ >= (limit ? limit : UINT32_MAX)) cull.candidates.radius[row] = -1.0f;
     }
+    mark_traced(&cull);
     parts.stage_ms[LIGHT_STAGE_CANDIDATES] = lap_ms(&clock_ms);
 
     u32 *rows = ARENA_PUSH(scratch, u32, ALIGN_UP(count, SIMD_WIDTH));
@@ -432,7 +534,8 @@ LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *
     if (wants_marks(desc->settings.view))
         write_marks(&cull, &parts, shown, place, shown_count, scratch);
     collect_gi(&cull, &parts, scratch);
-    collect_directionals(&parts, light, &cull.candidates);
+    collect_traced(&cull, &parts, scratch);
+    collect_directionals(&cull, &parts);
     parts.vertex_lighting = desc->settings.vertex_lighting ? cull.config.vertex_lighting : 0.0f;
     parts.stage_ms[LIGHT_STAGE_INDIVIDUAL] = lap_ms(&clock_ms);
     return parts;

@@ -4,6 +4,7 @@
 //   packet_shadow.c  the shadow map's matrix
 //   packet_draws.c   material palette, drawcalls, instances
 //   packet_post.c    the post chain
+//   gi_*.c           global illumination (gi.h)
 // All arrays lie in the scratch arena until the packet's size is known.
 #ifndef LUZ_PACKET_PARTS_H
 #define LUZ_PACKET_PARTS_H
@@ -41,14 +42,18 @@ typedef struct LightParts {
     u32 point_highlights, spot_highlights; // the first so many of each have a highlight
     GiLightRecord *gi_lights;              // [gi_count]
     u32 gi_count;
-    DirectionalRecord directionals[DIRECTIONALS_CAP];
-    u32 directional_count;
-    bool casts_shadow;     // directional 0 wants a shadow map
-    Vec3 shadow_direction; // unit, the way directional 0 shines
+    TracedLightRecord *traced; // [traced_count], in row order; they are not among `lights`
+    u32 traced_count, traced_local;
+    DirectionalRecord directionals[DIRECTIONALS_CAP]; // see packet.h
+    u32 directional_count, screen_directional_count;
+    bool casts_shadow; // directional `shadow_index` wants a shadow map
+    u32 shadow_index;
+    Vec3 shadow_direction; // unit, the way it shines
 } LightParts;
-// occlusion NULL = nothing hides.
+// occlusion NULL = nothing hides. gi: with enabled = 0 there are no GI lights and no traced ones.
 LightParts packet_collect_lights(const PacketBuildDesc *desc, const PacketView *view,
-                                 const OcclusionBuffer *occlusion, Arena *scratch);
+                                 const OcclusionBuffer *occlusion, const GiParams *gi,
+                                 Arena *scratch);
 
 // ---- packet_shadow.c ----
 
@@ -101,4 +106,18 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
                                const MaterialPalette *palette, const u32 *rows, u32 row_count,
                                const ShadowFit *shadow, Arena *scratch);
 void packet_write_instances(const World *world, const DrawLists *draws, InstanceRecord *out);
+// What is voxelised (mode: VOXEL_STATIC or VOXEL_DYNAMIC), wherever the view is: all draws are
+// lists[0], by mesh, then material, in full detail; none are blended.
+DrawLists packet_collect_voxelised(const World *world, const AssetStore *assets,
+                                   const MaterialPalette *palette, u32 mode, Arena *scratch);
+
+// ---- gi_volume.c and its friends ----
+
+typedef struct GiParts {
+    GiParams params;
+    GiRecord record;
+    DrawLists draws[2]; // static, dynamic
+    u32 *lists;         // [list_count]
+    u32 list_count, list_index_count;
+} GiParts;
 #endif

@@ -128,6 +128,8 @@ typedef struct PacketBuildDesc {
     u32 last_stamp;             // world stamp of the previous packet: for the flags
     const f32 *previous_view_projection; // of the previous packet; NULL = there is none
     const LightManagerState *light_manager; // NULL = no memory: decided afresh and applied at once
+    const PacketGi *previous_gi; // of the previous packet, makes the flags exact; NULL = stamps alone
+    bool cold;                  // PACKET_COLD: the picture must not hang on earlier ones
 } PacketBuildDesc;
 // Steps of the light manager. merge, drop, budget: where the state decides them, the time of its
 // newest decision (one in six ticks), which is no part of the packet's own time.
@@ -144,6 +146,7 @@ typedef enum LightStage {
 typedef struct PacketBuildTimes {
     f32 cull_ms, lights_ms, grid_ms, pack_ms;
     f32 occluders_ms; // drawing them; a part of cull_ms
+    f32 gi_ms;        // box, draws and light lists of the voxels
     f32 light_stage_ms[LIGHT_STAGE_COUNT]; // parts of lights_ms
 } PacketBuildTimes;
 // The packet lies in `out`; scratch is used and given back. times may be NULL.

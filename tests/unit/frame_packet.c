@@ -342,7 +342,7 @@ TEST(frame_packet, each_index_is_checked) {
     TOO_LARGE(p->shadow_size_px, 4097);
     TOO_LARGE(p->brdf_mask, 64);
     TOO_LARGE(p->attenuation, 3);
-    TOO_LARGE(p->flags, 4);
+    TOO_LARGE(p->flags, 8);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts[i], p->frame.counts[i] + 1);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts2[i], p->frame.counts2[i] + 1);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts3[i], p->frame.counts3[i] + 1);

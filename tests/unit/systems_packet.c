@@ -235,6 +235,7 @@ TEST(systems_packet, more_materials_than_fit_are_drawn_anyhow) {
 
 TEST(systems_packet, light_manager_keeps_what_lights_the_view) {
     SystemsFixture *f = systems_fixture_create(5);
+    fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -6), vec3(1, 1, 1), 0, COLLISION_NONE);
     Entity spot = fixture_spawn_light(f, LIGHT_SPOT, vec3(0, 0, -5), 4);
     Entity point = fixture_spawn_light(f, LIGHT_POINT, vec3(1, 0, -5), 2);
     fixture_spawn_light(f, LIGHT_POINT, vec3(0, 0, 50), 2); // behind
@@ -248,6 +249,7 @@ TEST(systems_packet, light_manager_keeps_what_lights_the_view) {
     systems_settle(&f->systems, &f->context);
     RenderSettings settings = settings_default();
     settings.light_gain = 2;
+    assert_true(settings_set(&settings, "gi.enabled=on"));
     const Packet *p = fixture_packet(f, ENTITY_NONE, settings, 320, 200, 0);
     const LightRecord *lights = PACKET_DATA(p, lights, LightRecord);
     assert_int_equal(p->counts.lights_total, 5);
