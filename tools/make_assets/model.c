@@ -35,6 +35,7 @@ const ModelRow MODEL_TABLE[] = {
     {"door_leaf", model_make_door_leaf},
     {"firefly", model_make_firefly},
     {"light_box", model_make_light_box},
+    {"teapot", model_make_teapot},
     {NULL, NULL},
 };
 

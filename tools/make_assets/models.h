@@ -49,4 +49,7 @@ void model_make_crystal(Model *m);
 void model_make_firefly(Model *m);
 void model_make_light_box(Model *m);
 
+// model_teapot.c
+void model_make_teapot(Model *m);
+
 #endif
