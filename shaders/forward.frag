@@ -18,23 +18,16 @@ layout(location = 7) flat in float in_vertex_share;
 
 layout(location = 0) out vec4 out_color;
 
-// All lights of the frame, in their order. From the uniform blocks, which need no uniform index (to
-// make one costs more than the read), a loop for each block: choosing the block inside would read
-// both.
-#define LIGHTS_OF_BLOCK(block, base, first, last, light)                                           \
-    for (uint i = max(first, base); i < min(last, base + LIGHT_BLOCK_CAP); i++)                    \
-        sum += light(s, block[i - base].position, block[i - base].color);
-#define LIGHTS_OF_BLOCKS(first, last, light)                                                       \
-    {                                                                                              \
-        LIGHTS_OF_BLOCK(light_block_0, 0u, first, last, light)                                     \
-        if (LIGHT_BLOCKS == 2u) LIGHTS_OF_BLOCK(light_block_1, LIGHT_BLOCK_CAP, first, last, light) \
-    }
+// All lights of the frame, in their order. The uniform blocks need no uniform index: to make one
+// costs more than the read.
 vec3 all_light(Surface s) {
     if (LIGHT_BLOCKS == 0u) return cell_light_list(s, cell_list_all(), true);
     vec3 sum = vec3(0.0);
     uint points = flow.counts.x, all = points + flow.counts.y;
-    LIGHTS_OF_BLOCKS(0u, flow.counts3.x, light_point)
-    LIGHTS_OF_BLOCKS(flow.counts3.x, points, light_point_diffuse)
+    for (uint i = 0u; i < flow.counts3.x; i++)
+        sum += light_point(s, light_position(i), light_color(i));
+    for (uint i = flow.counts3.x; i < points; i++)
+        sum += light_point_diffuse(s, light_position(i), light_color(i));
     if (SPOTS == 0u) return sum;
     uint diffuse = points + flow.counts3.y;
     for (uint i = points; i < diffuse; i++)

@@ -17,11 +17,11 @@ layout(std430, set = 0, binding = BINDING_SPOTS) readonly buffer SpotBuffer { Sp
 layout(std140, set = 0, binding = BINDING_DIRECTIONALS) uniform DirectionalBuffer {
     DirectionalRecord directionals[DIRECTIONALS_CAP];
 };
-layout(std140, set = 0, binding = BINDING_LIGHT_BLOCK_0) uniform LightBlock0 {
-    LightRecord light_block_0[LIGHT_BLOCK_CAP];
+layout(std140, set = 0, binding = BINDING_LIGHT_POSITIONS) uniform LightPositions {
+    vec4 light_positions[LIGHT_BLOCK_CAP];
 };
-layout(std140, set = 0, binding = BINDING_LIGHT_BLOCK_1) uniform LightBlock1 {
-    LightRecord light_block_1[LIGHT_BLOCK_CAP];
+layout(std140, set = 0, binding = BINDING_LIGHT_COLORS) uniform LightColors {
+    vec4 light_colors[LIGHT_BLOCK_CAP];
 };
 layout(std140, set = 0, binding = BINDING_SPOT_BLOCK) uniform SpotBlock {
     SpotRecord spot_block[SPOT_BLOCK_CAP];
@@ -220,20 +220,10 @@ vec3 light_base(Surface s, vec3 albedo, uint material) {
 
 // A light by index, from wherever this frame's lights fit.
 vec4 light_position(uint index) {
-    if (LIGHT_BLOCKS == 1u) return light_block_0[index].position;
-    if (LIGHT_BLOCKS == 2u) {
-        uint i = index & (LIGHT_BLOCK_CAP - 1u);
-        return index < LIGHT_BLOCK_CAP ? light_block_0[i].position : light_block_1[i].position;
-    }
-    return lights[index].position;
+    return LIGHT_BLOCKS != 0u ? light_positions[index] : lights[index].position;
 }
 vec4 light_color(uint index) {
-    if (LIGHT_BLOCKS == 1u) return light_block_0[index].color;
-    if (LIGHT_BLOCKS == 2u) {
-        uint i = index & (LIGHT_BLOCK_CAP - 1u);
-        return index < LIGHT_BLOCK_CAP ? light_block_0[i].color : light_block_1[i].color;
-    }
-    return lights[index].color;
+    return LIGHT_BLOCKS != 0u ? light_colors[index] : lights[index].color;
 }
 vec4 spot_direction(uint spot) {
     return LIGHT_BLOCKS != 0u ? spot_block[spot].direction : spots[spot].direction;

@@ -1,8 +1,8 @@
 // list_shade.glsl: sums over a list's lights in compute shaders, all lanes on.
 //
-// Each lane loads one entry of the list; then the light loop takes them one by one: an index is
-// made uniform by a shuffle, and a uniform block read at a uniform address is a scalar load on the
-// software driver, a quarter of the price of shuffling the light's eight floats.
+// Each lane loads one light of the list; then the light loop takes them one by one, by shuffles. A
+// uniform block read in the loop would be a gather of the same address for every lane, on the
+// software driver: 25 instructions a float, where a shuffle is one.
 // The includer says what a list's entry is: uint list_entry(bool other, uint at).
 #ifndef LIST_SHADE_GLSL
 #define LIST_SHADE_GLSL
@@ -12,21 +12,12 @@ vec3 shade_points(vec3 sum, Surface s, bool other, uint first, uint last, bool h
     for (uint b = first; b < last; b += gl_SubgroupSize) {
         uint mine = list_entry(other, min(b + gl_SubgroupInvocationID, last - 1u));
         uint end = min(gl_SubgroupSize, last - b);
-        if (LIGHT_BLOCKS != 0u) {
-            for (uint j = 0u; j < end; j++) {
-                uint index = subgroupShuffle(mine, j);
-                vec4 position = light_position(index), color = light_color(index);
-                sum += highlight ? light_point(s, position, color)
-                                 : light_point_diffuse(s, position, color);
-            }
-        } else {
-            vec4 own_position = light_position(mine), own_color = light_color(mine);
-            for (uint j = 0u; j < end; j++) {
-                vec4 position = subgroupShuffle(own_position, j);
-                vec4 color = subgroupShuffle(own_color, j);
-                sum += highlight ? light_point(s, position, color)
-                                 : light_point_diffuse(s, position, color);
-            }
+        vec4 own_position = light_position(mine), own_color = light_color(mine);
+        for (uint j = 0u; j < end; j++) {
+            vec4 position = subgroupShuffle(own_position, j);
+            vec4 color = subgroupShuffle(own_color, j);
+            sum += highlight ? light_point(s, position, color)
+                             : light_point_diffuse(s, position, color);
         }
     }
     return sum;
@@ -37,11 +28,14 @@ vec3 shade_spots(vec3 sum, Surface s, bool other, uint first, uint last, bool hi
     for (uint b = first; b < last; b += gl_SubgroupSize) {
         uint mine = list_entry(other, min(b + gl_SubgroupInvocationID, last - 1u));
         uint end = min(gl_SubgroupSize, last - b);
+        vec4 own_position = light_position(mine), own_color = light_color(mine);
+        vec4 own_direction = spot_direction(mine - point_count);
+        float own_edge = spot_edge(mine - point_count);
         for (uint j = 0u; j < end; j++) {
-            uint index = subgroupShuffle(mine, j);
-            vec4 position = light_position(index), color = light_color(index);
-            vec4 direction = spot_direction(index - point_count);
-            float edge = spot_edge(index - point_count);
+            vec4 position = subgroupShuffle(own_position, j);
+            vec4 color = subgroupShuffle(own_color, j);
+            vec4 direction = subgroupShuffle(own_direction, j);
+            float edge = subgroupShuffle(own_edge, j);
             sum += highlight ? light_spot(s, position, color, direction, edge)
                              : light_spot_diffuse(s, position, color, direction, edge);
         }
@@ -56,5 +50,11 @@ vec3 shade_list(Surface s, bool other, uint first, uvec4 ends) {
     if (SPOTS == 0u) return sum;
     vec3 spots = shade_spots(vec3(0.0), s, other, ends.y, ends.z, true);
     return sum + shade_spots(spots, s, other, ends.z, ends.w, false);
+}
+
+// The same sum to the bit, by half the code: for lists that are seldom shaded.
+vec3 shade_list_seldom(Surface s, bool other, uint first, uvec4 ends) {
+    vec3 sum = shade_points(vec3(0.0), s, other, first, ends.y, true);
+    return SPOTS == 0u ? sum : sum + shade_spots(vec3(0.0), s, other, ends.y, ends.w, true);
 }
 #endif

@@ -34,8 +34,8 @@ typedef struct MeshVertex {
 #define BINDING_FRAME           0  // FrameRecord, uniform
 #define BINDING_MATERIALS       1  // MaterialRecord[MATERIALS_CAP], uniform
 #define BINDING_DIRECTIONALS    2  // DirectionalRecord[DIRECTIONALS_CAP], uniform
-#define BINDING_LIGHT_BLOCK_0   3  // LightRecord[LIGHT_BLOCK_CAP], uniform: lights from 0
-#define BINDING_LIGHT_BLOCK_1   4  // LightRecord[LIGHT_BLOCK_CAP], uniform: the next
+#define BINDING_LIGHT_POSITIONS 3  // vec4[LIGHT_BLOCK_CAP], uniform: LightRecord.position
+#define BINDING_LIGHT_COLORS    4  // vec4[LIGHT_BLOCK_CAP], uniform: LightRecord.color
 #define BINDING_SPOT_BLOCK      5  // SpotRecord[SPOT_BLOCK_CAP], uniform
 #define BINDING_FLOW            6  // FrameRecord, storage
 #define BINDING_LIGHTS          7  // LightRecord[], storage, in classes (LIGHT_CLASSES); one dummy last
@@ -138,7 +138,7 @@ typedef struct MeshVertex {
 #define SPEC_CELL_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
 #define SPEC_DIRECTIONALS  9 // how many directional lights
-#define SPEC_LIGHT_BLOCKS  10 // uniform blocks that hold all lights: 1, 2; 0 = too many, use storage
+#define SPEC_LIGHT_BLOCKS  10 // 1 = the uniform blocks hold all lights, 0 = too many: use storage
 #define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades in turn (1..8)
 #define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
 #define SPEC_TEXTURES      13 // geometry: bit 0 has an albedo texture, bit 1 a normal map
@@ -213,7 +213,7 @@ typedef struct MeshVertex {
 #define MATERIALS_CAP     256
 #define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
-#define LIGHT_BLOCK_CAP   2048
+#define LIGHT_BLOCK_CAP   4096
 #define SPOT_BLOCK_CAP    2048
 #define DIRECTIONALS_CAP  8
 #define PUSH_SIZE         32 // bytes that every pipeline can be pushed

@@ -49,7 +49,7 @@ uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uin
     return count;
 }
 
-// Entries of the survivors, or of the tile's own list.
+// Entries of the survivors, or of the tile's own list; a constant says which.
 uint list_entry(bool from_tile, uint at) { return from_tile ? cell_index(at) : survivors[at]; }
 #include "list_shade.glsl"
 
@@ -84,16 +84,23 @@ void main() {
         subgroupMemoryBarrierShared();
         subgroupBarrier();
     }
+    // One of the two lists is empty. To choose inside the loops would read both.
     bool from_tile = SUBGROUP_CULL == 0u || counts.w > SURVIVORS_CAP;
-    uint first = from_tile ? list.x : list_base;
-    uvec4 ends = from_tile ? list_ends : list_base + counts;
-    if (!any_lit) ends = uvec4(first);
+    uvec4 ends = from_tile || !any_lit ? uvec4(list_base) : list_base + counts;
+    uvec4 tile_ends = from_tile && any_lit ? list_ends : uvec4(list.x);
 
     for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
         ivec2 pixel = pixel_of(round);
         GbufferPixel g = gbuffer_read(min(pixel, size - 1));
         Surface s = gbuffer_surface(g);
-        vec3 radiance = gbuffer_radiance(g, s, shade_list(s, from_tile, first, ends));
+        vec3 sum = vec3(0.0);
+        if (SUBGROUP_CULL != 0u) {
+            sum = shade_list(s, false, list_base, ends);
+            sum += shade_list_seldom(s, true, list.x, tile_ends);
+        } else {
+            sum = shade_list(s, true, list.x, tile_ends);
+        }
+        vec3 radiance = gbuffer_radiance(g, s, sum);
         if (pixel.x < size.x && pixel.y < size.y)
             imageStore(hdr, pixel, vec4(g.depth > 0.0 ? radiance : vec3(0.0), 1.0));
     }

@@ -13,7 +13,7 @@ static const char *const target_labels[RESOURCE_COUNT] = {
     RENDER_RESOURCES(X)
 #undef X
 };
-static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame", "gi",
+static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame", "light blocks", "gi",
 #define X(id, section, ...) #section,
                                                               FRAME_BUFFERS(X)
 #undef X
@@ -121,7 +121,7 @@ static bool targets_resize(Renderer *renderer, const Packet *packet) {
     return ok;
 }
 
-// Data and its size; the buffer grows to the next power of two.
+// Data and its size; NULL = the caller fills it. The buffer grows to the next power of two.
 static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u64 size,
                         u64 min_cap) {
     GpuBuffer *buffer = &renderer->buffers[id];
@@ -144,7 +144,22 @@ static bool buffer_fill(Renderer *renderer, FrameBuffer id, const void *data, u6
         renderer->frame_group_stale = true;
         if (!buffer->id) return false;
     }
-    if (size) memcpy(gpu_buffer_map(renderer->gpu, *buffer), data, size);
+    if (size && data) memcpy(gpu_buffer_map(renderer->gpu, *buffer), data, size);
+    return true;
+}
+
+// Positions and colours apart, so that a uniform block of 64 KiB holds one of all lights: from two
+// blocks of whole records a shader would read both for each light and choose.
+static bool light_blocks_fill(Renderer *renderer, const Packet *packet) {
+    const u64 size = 2 * LIGHT_BLOCK_CAP * sizeof(vec4);
+    if (!buffer_fill(renderer, FRAME_BUFFER_LIGHT_BLOCKS, NULL, size, size)) return false;
+    if (!packet_fits_light_blocks(packet)) return true;
+    const LightRecord *lights = PACKET_DATA(packet, lights, LightRecord);
+    vec4 *blocks = gpu_buffer_map(renderer->gpu, renderer->buffers[FRAME_BUFFER_LIGHT_BLOCKS]);
+    for (u32 i = 0; i < packet->lights.count; i++) {
+        memcpy(blocks[i], lights[i].position, sizeof(vec4));
+        memcpy(blocks[LIGHT_BLOCK_CAP + i], lights[i].color, sizeof(vec4));
+    }
     return true;
 }
 
@@ -164,8 +179,8 @@ static bool frame_group_update(Renderer *renderer) {
         {BINDING_FRAME, FRAME_BUFFER_FRAME, 0},
         {BINDING_MATERIALS, FRAME_BUFFER_MATERIALS, 0},
         {BINDING_DIRECTIONALS, FRAME_BUFFER_DIRECTIONALS, 0},
-        {BINDING_LIGHT_BLOCK_0, FRAME_BUFFER_LIGHTS, 0},
-        {BINDING_LIGHT_BLOCK_1, FRAME_BUFFER_LIGHTS, LIGHT_BLOCK_CAP * sizeof(LightRecord)},
+        {BINDING_LIGHT_POSITIONS, FRAME_BUFFER_LIGHT_BLOCKS, 0},
+        {BINDING_LIGHT_COLORS, FRAME_BUFFER_LIGHT_BLOCKS, LIGHT_BLOCK_CAP * sizeof(vec4)},
         {BINDING_SPOT_BLOCK, FRAME_BUFFER_SPOTS, 0},
         {BINDING_FLOW, FRAME_BUFFER_FRAME, 0},
         {BINDING_LIGHTS, FRAME_BUFFER_LIGHTS, 0},
@@ -238,7 +253,8 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
         !lookups_update(renderer, packet))
         return false;
     if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0) ||
-        !buffer_fill(renderer, FRAME_BUFFER_GI, &packet->gi.record, sizeof packet->gi.record, 0))
+        !buffer_fill(renderer, FRAME_BUFFER_GI, &packet->gi.record, sizeof packet->gi.record, 0) ||
+        !light_blocks_fill(renderer, packet))
         return false;
 #define X(id, section, Type, min_count)                                                            \
     if (!buffer_fill(renderer, FRAME_BUFFER_##id, PACKET_DATA(packet, section, Type),              \

@@ -464,10 +464,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
         [SPEC_DIRECTIONALS] = packet->directionals.count,
-        [SPEC_LIGHT_BLOCKS] = packet->spots.count > SPOT_BLOCK_CAP          ? 0
-                              : packet->lights.count <= LIGHT_BLOCK_CAP     ? 1
-                              : packet->lights.count <= 2 * LIGHT_BLOCK_CAP ? 2
-                                                                            : 0,
+        [SPEC_LIGHT_BLOCKS] = packet_fits_light_blocks(packet),
         [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
         [SPEC_GI_FACES] = gi->faces,
         [SPEC_GI_NEAREST_MIPS] = gi->mips == GI_MIPS_NEAREST,

@@ -63,7 +63,7 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
     X(INSTANCES, instances, InstanceRecord, 1)                                                     \
     X(MATERIALS, materials, MaterialRecord, MATERIALS_CAP)                                         \
     X(DIRECTIONALS, directionals, DirectionalRecord, DIRECTIONALS_CAP)                             \
-    X(LIGHTS, lights, LightRecord, 2 * LIGHT_BLOCK_CAP)                                            \
+    X(LIGHTS, lights, LightRecord, 1)                                                              \
     X(SPOTS, spots, SpotRecord, SPOT_BLOCK_CAP)                                                    \
     X(CELLS, cells, CellRecord, 1)                                                                 \
     X(LIGHT_INDICES, light_indices, u32, 1)                                                        \
@@ -73,13 +73,19 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
     X(GI_LISTS, gi_lists, u32, 1)                                                                  \
     X(TRACED_LIGHTS, traced_lights, TracedLightRecord, GI_TRACED_CAP)
 typedef enum FrameBuffer {
-    FRAME_BUFFER_FRAME, // the FrameRecord itself
-    FRAME_BUFFER_GI,    // the GiRecord
+    FRAME_BUFFER_FRAME,        // the FrameRecord itself
+    FRAME_BUFFER_LIGHT_BLOCKS, // positions of all lights, then colours, if the blocks hold them
+    FRAME_BUFFER_GI,           // the GiRecord
 #define X(id, ...) FRAME_BUFFER_##id,
     FRAME_BUFFERS(X)
 #undef X
         FRAME_BUFFER_COUNT
 } FrameBuffer;
+
+// Do the uniform blocks of lights hold all of the packet's? If not, shaders read storage buffers.
+static inline bool packet_fits_light_blocks(const Packet *packet) {
+    return packet->lights.count <= LIGHT_BLOCK_CAP && packet->spots.count <= SPOT_BLOCK_CAP;
+}
 
 // --- Pipelines (pipelines.c) ---
 

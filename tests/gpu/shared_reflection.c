@@ -21,8 +21,8 @@
                       M(FrameRecord, attenuation) M(FrameRecord, shadow) M(FrameRecord, slices)    \
                           M(FrameRecord, vertex_lighting) M(FrameRecord, previous_view_projection) \
                               M(FrameRecord, common_lobes) M(FrameRecord, coding)                  \
-                              M(FrameRecord, counts) M(FrameRecord, counts2)                       \
-                                  M(FrameRecord, counts3) M(FrameRecord, grid))                    \
+                                  M(FrameRecord, counts) M(FrameRecord, counts2)                   \
+                                      M(FrameRecord, counts3) M(FrameRecord, grid))                \
     X(InstanceRecord, M(InstanceRecord, world) M(InstanceRecord, ids))                             \
     X(MaterialRecord,                                                                              \
       M(MaterialRecord, albedo) M(MaterialRecord, specular) M(MaterialRecord, emissive)            \
@@ -64,8 +64,8 @@ static const struct {
     {"FrameBuffer", 0, BINDING_FRAME},
     {"MaterialBuffer", 0, BINDING_MATERIALS},
     {"DirectionalBuffer", 0, BINDING_DIRECTIONALS},
-    {"LightBlock0", 0, BINDING_LIGHT_BLOCK_0},
-    {"LightBlock1", 0, BINDING_LIGHT_BLOCK_1},
+    {"LightPositions", 0, BINDING_LIGHT_POSITIONS},
+    {"LightColors", 0, BINDING_LIGHT_COLORS},
     {"SpotBlock", 0, BINDING_SPOT_BLOCK},
     {"FlowBuffer", 0, BINDING_FLOW},
     {"LightBuffer", 0, BINDING_LIGHTS},
