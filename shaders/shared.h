@@ -244,8 +244,9 @@ typedef struct MeshVertex {
 // along z): bit x + dims.x * (y + dims.y * (z + dims.z * cascade)).
 #define GI_MASK_STATIC  0
 #define GI_MASK_DYNAMIC 1 // of voxels that are not static
-#define GI_MASK_SOLID   2 // inside of closed meshes, not on their surface
-#define GI_MASK_COUNT   3
+#define GI_MASK_LIT     2 // whose light is in the filtered images: the filter's own, nobody clears it
+#define GI_MASK_SOLID   3 // inside of closed meshes, not on their surface; there with solid alone
+#define GI_MASK_COUNT   4
 // A voxel's place in one word.
 #define GI_VOXEL_X_SHIFT 0  // 9 bits
 #define GI_VOXEL_Y_SHIFT 9  // 9 bits

@@ -193,11 +193,12 @@ static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, bool 
 }
 
 u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams *params) {
-    const u64 word = sizeof(u32), words = (voxels + 31) / 32 * (params->solid ? 3 : 2);
+    const u64 word = sizeof(u32), layer = (voxels + 31) / 32 * word;
     switch (buffer) {
     case RESOURCE_GI_MASKS:
+        return layer * (params->solid ? GI_MASK_COUNT : GI_MASK_SOLID);
     case RESOURCE_GI_RANKS:
-        return words * word;
+        return layer * (GI_MASK_DYNAMIC + 1);
     case RESOURCE_GI_VOXELS:
         return slots * word;
     case RESOURCE_GI_ATTRIBUTES:
@@ -276,6 +277,7 @@ static void decide(Renderer *renderer, const Packet *packet) {
     GiState *gi = &renderer->gi;
     const PacketGi *wanted = &packet->gi;
     gi->is_cold = (packet->flags & PACKET_COLD) != 0 || !gi->has_lit;
+    gi->is_fresh = !gi->has_lit;
     bool warming_up = renderer->is_warming_up && !gi->is_warm;
     gi->voxelise_static = gi->static_key != wanted->static_key || warming_up;
     if (gi->voxelise_static) gi->dynamic_key = 0; // what is static now takes voxels from them

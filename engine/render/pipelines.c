@@ -53,6 +53,7 @@ typedef struct PipelineRow {
     GpuBlend blend;
     GpuVertexLayout vertex_layout;
     u64 spec_mask;
+    const char *compute_byte; // of shaders that write GI's images: the same for format byte
 } PipelineRow;
 
 static const PipelineRow rows[PIPELINE_COUNT] = {
@@ -373,7 +374,8 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
         .label = row->label,
         .vertex = row->vertex,
         .fragment = row->fragment,
-        .compute = row->compute,
+        .compute =
+            key->spec[SPEC_GI_FORMAT] && row->compute_byte ? row->compute_byte : row->compute,
         .layouts = {is_gi_build ? renderer->gi_build_layout : renderer->frame_layout,
                     renderer->material_layout, renderer->gi_screen_layout},
         .layout_count = is_gi_build || !is_gi_screen ? 2 : 3,

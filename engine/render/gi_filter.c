@@ -1,0 +1,99 @@
+// gi_filter.c: from lit voxels to the atlas that cones read: radiance of six directions (or one) in
+// ever coarser levels.
+//
+// Data in: RADIANCE by slot, masks, places. Data out: GI_BASE (faces shared) and GI_ATLAS. Called
+// by the pass table: after lighting, and again after the bounce. Does not: light anything.
+//
+// The finest level that is written, and the one over it, hold what is occupied and zeros; only
+// voxels that are there or were there are touched (gi_filter_base.glsl). From the next level on
+// everything is made anew: an eighth of the texels each.
+#include "passes.h"
+
+static bool is_fresh(const PassContext *c) { return gi_is_on(c) && c->renderer->gi.is_fresh; }
+// With feedback the bounce still reads what the last frame left: filtered once, after it.
+static bool is_relit(const PassContext *c) {
+    return gi_is_on(c) && c->renderer->gi.relight && !gi_feeds_back(c);
+}
+
+static u64 voxel_count(const PassContext *c) {
+    const u32 *dims = c->packet->gi.record.dims;
+    return (u64)dims[0] * dims[1] * dims[2] * dims[3];
+}
+
+// Volumes that were just made hold anything.
+static void fresh_record(const PassContext *c) {
+    u64 layer = voxel_count(c) / 8;
+    gpu_cmd_clear_texture(c->cmd, c->renderer->targets[RESOURCE_GI_BASE]);
+    gpu_cmd_clear_texture(c->cmd, c->renderer->targets[RESOURCE_GI_ATLAS]);
+    gpu_cmd_fill_buffer(c->cmd, c->renderer->device_buffers[RESOURCE_GI_MASKS], GI_MASK_LIT * layer,
+                        layer, 0);
+}
+const Pass gi_fresh_pass = {
+    "voxel filter start",
+    {USE(GI_BASE, COPY_TARGET), USE(GI_ATLAS, COPY_TARGET), USE(GI_MASKS, COPY_TARGET)},
+    3,
+    fresh_record,
+    is_fresh};
+
+enum { STEP_FORGET, STEP_SCATTER, STEP_PARENTS };
+
+// Level of the atlas that STEP_PARENTS writes.
+static u32 parent_level(const PassContext *c) {
+    return c->packet->gi.params.faces == GI_FACES_APART ? 1 : 0;
+}
+
+static GpuPipeline base_pipeline(const PassContext *c, u32 step) {
+    return pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_BASE,
+                        (PipelineVariant){.post = step});
+}
+
+static void images_barrier(const PassContext *c) {
+    gi_barrier(c, (RenderResource[]){RESOURCE_GI_BASE, RESOURCE_GI_ATLAS, RESOURCE_GI_MASKS}, 3);
+}
+
+static void by_slot(const PassContext *c, u32 step, u32 level) {
+    gi_bind_build(c, base_pipeline(c, step), level);
+    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
+                              GI_COUNTER_ALL_ARGS * sizeof(u32));
+    images_barrier(c);
+}
+
+static void levels_record(const PassContext *c) {
+    const GiRecord *record = &c->packet->gi.record;
+    u32 blocks = c->packet->gi.params.filter == GI_FILTER_ISOTROPIC ? 1 : 6;
+    u32 cascades = record->dims[3], first = parent_level(c);
+    by_slot(c, STEP_SCATTER, 0);
+    by_slot(c, STEP_PARENTS, first);
+    GpuPipeline mip = pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_MIP, PIPELINE_PLAIN);
+    for (u32 level = first + 1; level < record->atlas[3]; level++) {
+        u32 x = (record->atlas[0] >> level) * blocks, y = record->atlas[1] >> level;
+        u32 z = (record->atlas[2] >> level) * cascades;
+        gi_bind_build(c, mip, level);
+        gpu_cmd_dispatch(c->cmd, (x + 7) / 8, (y + 3) / 4, (z + 1) / 2);
+        gi_barrier(c, (RenderResource[]){RESOURCE_GI_ATLAS}, 1);
+    }
+}
+
+static void filter_record(const PassContext *c) {
+    // What moves leaves its light behind; and whatever was voxelised anew.
+    gi_bind_build(c, base_pipeline(c, STEP_FORGET), parent_level(c));
+    gpu_cmd_dispatch(c->cmd, (u32)((voxel_count(c) / 32 + 63) / 64), 1, 1);
+    images_barrier(c);
+    levels_record(c);
+}
+
+#define FILTER_USES                                                                                \
+    {                                                                                              \
+        USE(GI_BASE, STORAGE_COMPUTE), USE(GI_ATLAS, STORAGE_COMPUTE),                             \
+            USE(GI_MASKS, STORAGE_COMPUTE), USE(GI_RANKS, STORAGE_READ_COMPUTE),                   \
+            USE(GI_VOXELS, STORAGE_READ_COMPUTE), USE(GI_RADIANCE, STORAGE_READ_COMPUTE),          \
+            USE(GI_COUNTERS, INDIRECT)                                                             \
+    }
+const Pass gi_filter_pass = {"voxel filter", FILTER_USES, 7, filter_record, is_relit};
+static void refilter_record(const PassContext *c) {
+    if (gi_feeds_back(c))
+        filter_record(c);
+    else
+        levels_record(c);
+}
+const Pass gi_refilter_pass = {"voxel filter 2", FILTER_USES, 7, refilter_record, gi_bounces};
