@@ -1,0 +1,35 @@
+#version 460
+// test_cones.comp: of tests/gpu: cones of a list through given volumes. A cone is 12 floats in the
+// accumulators: start, tan of half the aperture, direction, first, reach, 3 unused; what it brings
+// is 8 floats in the radiance: light, occlusion, steps, 2 unused. Step 1: hemispheres (direction is
+// the normal, the rest unused), which bring light and visibility.
+#extension GL_GOOGLE_include_directive : require
+#define GI_BUILD
+#include "gi.glsl"
+#include "gi_cones.glsl"
+layout(local_size_x = 64) in;
+
+float number(uint cone, uint at) { return uintBitsToFloat(gi_accumulators[cone * 12u + at]); }
+vec3 numbers(uint cone, uint at) {
+    return vec3(number(cone, at), number(cone, at + 1u), number(cone, at + 2u));
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= gi_flow.counts.z) return;
+    vec4 light;
+    vec2 more;
+    if (GI_STEP == 0u) {
+        GiCone cone = gi_cone(numbers(i, 0u), numbers(i, 4u), number(i, 3u), number(i, 7u),
+                              number(i, 8u));
+        light = cone.light;
+        more = vec2(cone.occlusion, cone.steps);
+    } else {
+        GiHemisphere sum = gi_hemisphere(numbers(i, 0u), numbers(i, 4u), GI_START, gi_reach(), 6u,
+                                         vec3(1.0), vec3(0.25));
+        light = vec4(sum.light, sum.visibility);
+        more = vec2(0.0, sum.steps);
+    }
+    for (uint k = 0u; k < 4u; k++) gi_radiance[i * 8u + k] = floatBitsToUint(light[k]);
+    for (uint k = 0u; k < 2u; k++) gi_radiance[i * 8u + 4u + k] = floatBitsToUint(more[k]);
+}
