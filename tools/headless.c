@@ -78,6 +78,15 @@ const char *headless_camera(const Session *session, const char *asked) {
     return NULL;
 }
 
+const char *headless_preset_help(void) {
+    static char help[512]; // filled once a run
+    u64 used = (u64)snprintf(help, sizeof help, "settings by a name, before --set:");
+    for (u32 i = 0; i < setting_preset_count && used < sizeof help; i++)
+        used += (u64)snprintf(help + used, sizeof help - used, "\n%s: %s", setting_presets[i].name,
+                              setting_presets[i].help);
+    return help;
+}
+
 bool headless_settings(RenderSettings *settings, const char *path, const char *view,
                        const ToolList *sets) {
     char text[128];

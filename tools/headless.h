@@ -33,6 +33,8 @@ const char *headless_camera(const Session *session, const char *asked);
 // path and view may be NULL; sets are "key=value". False after a message.
 bool headless_settings(RenderSettings *settings, const char *path, const char *view,
                        const ToolList *sets);
+// The help of option --preset, with all names: call settings_set_preset before headless_settings.
+const char *headless_preset_help(void);
 // Pixels drawn for a picture of `size` under settings.scale.
 void headless_internal_size(const RenderSettings *settings, const u32 size[2], u32 out[2]);
 

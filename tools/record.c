@@ -11,7 +11,7 @@
 #define RECORD_ARENA_CAP GIB(1)
 
 typedef struct RecordOptions {
-    const char *out, *script, *path;
+    const char *out, *script, *path, *preset;
     f64 seconds;
     u32 size[2], image_every, seed;
     ToolList sets;
@@ -121,7 +121,7 @@ static int record_run(int argc, char **argv) {
     static Record record;
     record =
         (Record){.options = {.script = "walk", .size = {640, 360}, .image_every = 120, .seed = 1},
-                 .view = {.settings = settings_default()}};
+                 .view = {.settings = settings_default(), .cold = true}};
     RecordOptions *o = &record.options;
     const ToolOption options[] = {
         {"out", 'o', OPTION_TEXT, &o->out, "FILE", "the recording (.luzr)"},
@@ -135,6 +135,7 @@ static int record_run(int argc, char **argv) {
          "hash and thumbnail of every Nth tick's picture,\ndefault 120; 0 = none (needs no GPU)"},
         {"size", 's', OPTION_SIZE, &o->size, "WxH", "of the pictures, default 640x360"},
         {"path", 'p', OPTION_TEXT, &o->path, "P", "forward, deferred or tiled_deferred"},
+        {"preset", 0, OPTION_TEXT, &o->preset, "NAME", headless_preset_help()},
         {"set", 0, OPTION_LIST, &o->sets, "KEY=VALUE", "a render setting, repeatable"},
     };
     const ToolSpec spec = {
@@ -154,6 +155,7 @@ static int record_run(int argc, char **argv) {
     ToolParse parsed = tool_parse(&spec, argc, argv, &record.common, &positional);
     if (parsed != PARSE_RUN) return parsed == PARSE_HELP ? TOOL_OK : TOOL_USAGE;
     if (!o->out) return tool_fail(TOOL_USAGE, "record", "-o FILE.luzr is missing");
+    if (o->preset && !settings_set_preset(&record.view.settings, o->preset)) return TOOL_USAGE;
     if (!headless_settings(&record.view.settings, o->path, NULL, &o->sets)) return TOOL_USAGE;
     record.level = positional.items[0];
     tool_begin(&record.common);

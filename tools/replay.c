@@ -31,7 +31,7 @@ typedef struct Replay {
 static int plan_images(Replay *replay) {
     const ReplayOptions *o = &replay->options;
     const RecordingInfo *info = &replay->recording.info;
-    bool changed = o->path || o->view || o->sets.count;
+    bool changed = o->path || o->view || o->preset || o->sets.count;
     bool wanted = replay->recording.image_count > 0 && !o->no_images;
     if (!wanted && !o->out) return TOOL_OK;
     if (!headless_open(&replay->headless, &replay->common)) {
@@ -206,6 +206,8 @@ static int replay_recording(Replay *replay, Arena *arena) {
     if (replay->session.level.content_hash != info->level_hash)
         LOG(CAPTURE_MISMATCH, "'%s' or a file of it has changed since the recording", level);
     replay->view.settings = info->settings;
+    replay->view.cold = true;
+    if (o->preset && !settings_set_preset(&replay->view.settings, o->preset)) return TOOL_USAGE;
     if (!headless_settings(&replay->view.settings, o->path, o->view, &o->sets)) return TOOL_USAGE;
     u32 size[2] = {MAX(info->width_px, 1), MAX(info->height_px, 1)}, internal[2];
     headless_internal_size(&replay->view.settings, size, internal);
@@ -237,6 +239,7 @@ static int replay_run(int argc, char **argv) {
         {"out", 'o', OPTION_TEXT, &o->out, "FILE", "picture of the frame, or of the last tick"},
         {"path", 'p', OPTION_TEXT, &o->path, "P", "draw with another path"},
         {"view", 0, OPTION_TEXT, &o->view, "V", "draw another view"},
+        {"preset", 0, OPTION_TEXT, &o->preset, "NAME", headless_preset_help()},
         {"set", 0, OPTION_LIST, &o->sets, "KEY=VALUE", "another render setting, repeatable"},
         SPLIT_TOOL_OPTIONS(o->split),
         {"level", 0, OPTION_TEXT, &o->level, "LEVEL",
@@ -273,6 +276,8 @@ static int replay_run(int argc, char **argv) {
     bool is_frame = dot && strcmp(dot, ".luzf") == 0;
     if (o->split.mode && !o->split.ways[0])
         return tool_fail(TOOL_USAGE, "replay", "--split-mode goes with --split A B");
+    if (o->preset && is_frame)
+        return tool_fail(TOOL_USAGE, "replay", "--preset is for recordings: a frame is what it is");
     if (o->split.ways[0] && !is_frame)
         return tool_fail(TOOL_USAGE, "replay", "--split is for frames (.luzf)");
     tool_begin(&replay.common);

@@ -7,7 +7,7 @@
 #include "split.h"
 
 typedef struct ReplayOptions {
-    const char *file, *out, *path, *view, *level, *diff;
+    const char *file, *out, *path, *view, *preset, *level, *diff;
     bool images, no_images; // forced on, off
     u32 shard[2];           // i of n, 1-based
     ToolList sets;

@@ -50,6 +50,14 @@ static int draw_frame(const ReplayOptions *options, const ToolCommon *common,
     return TOOL_OK;
 }
 
+// The frame drawn in the way of these settings, alone: nothing was drawn before it.
+static const Packet *make_way(const Packet *packet, const RenderSettings *settings, Arena *arena,
+                              Arena *scratch) {
+    Packet *copy = (Packet *)packet_relist(packet, settings, arena, scratch);
+    copy->flags |= PACKET_COLD;
+    return copy;
+}
+
 int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *arena) {
     AssetStore store;
     const Packet *packet;
@@ -64,9 +72,8 @@ int replay_frame(const ReplayOptions *options, const ToolCommon *common, Arena *
         arena_create(&scratch, "lists", RELIST_ARENA_CAP)) {
         Headless headless = {0};
         const Packet *a =
-            packet_relist(packet, is_split ? &split.settings[0] : &settings, arena, &scratch);
-        const Packet *b =
-            is_split ? packet_relist(packet, &split.settings[1], arena, &scratch) : NULL;
+            make_way(packet, is_split ? &split.settings[0] : &settings, arena, &scratch);
+        const Packet *b = is_split ? make_way(packet, &split.settings[1], arena, &scratch) : NULL;
         result = draw_frame(options, common, &store, a, &split, b, arena, &headless);
         headless_close(&headless);
         arena_destroy(&scratch);

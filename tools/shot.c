@@ -16,7 +16,7 @@
 #define HEAP_STATS_CAP 32
 
 typedef struct ShotOptions {
-    const char *out, *path, *view, *camera, *stats, *frame_file, *frames;
+    const char *out, *path, *view, *preset, *camera, *stats, *frame_file, *frames;
     u32 size[2], tick;
     bool has_range;
     u32 frame_count, range[2];
@@ -156,6 +156,7 @@ static int draw_one(Shot *shot) {
     const Packet *packet = next_packet(shot);
     if (!renderer_warm_up_path(shot->headless.renderer, packet)) return TOOL_ENVIRONMENT;
     if ((options->stats || shot->common.json) && !time_frames(shot)) return TOOL_ENVIRONMENT;
+    shot->view.cold = true; // those that were timed were not: a player's are not either
     packet = next_packet(shot);
     shot->counts = packet->counts;
     RenderImage image;
@@ -175,6 +176,7 @@ static int draw_split(Shot *shot) {
     const Packet *a, *b;
     session_frame_begin(&shot->session);
     shot->view.settings = split->settings[0];
+    shot->view.cold = true;
     if (!session_packet_split(&shot->session, &shot->view, &split->settings[1], &a, &b))
         return TOOL_USAGE;
     if (!split_draw(split, shot->headless.renderer, a, b, &shot->session.frame))
@@ -189,6 +191,7 @@ static int draw_split(Shot *shot) {
 
 static int draw_range(Shot *shot) {
     const u32 *range = shot->options.range;
+    shot->view.cold = true; // whatever the range begins with
     session_advance(&shot->session, range[0]);
     const Packet *packet = next_packet(shot);
     if (!renderer_warm_up_path(shot->headless.renderer, packet)) return TOOL_ENVIRONMENT;
@@ -345,6 +348,7 @@ static int shot_run(int argc, char **argv) {
         {"frames", 'n', OPTION_TEXT, &o->frames, "N|A..B",
          "time N frames of one tick (default 1, with --stats 9);\n"
          "or draw ticks A to B into -o name_%04d.png"},
+        {"preset", 0, OPTION_TEXT, &o->preset, "NAME", headless_preset_help()},
         {"set", 0, OPTION_LIST, &o->sets, "KEY=VALUE", "a render setting, repeatable"},
         SPLIT_TOOL_OPTIONS(o->split),
         {"stats", 0, OPTION_TEXT, &o->stats, "FILE", "measurements as JSON"},
@@ -372,6 +376,7 @@ static int shot_run(int argc, char **argv) {
     ToolParse parsed = tool_parse(&spec, argc, argv, &shot.common, &positional);
     if (parsed != PARSE_RUN) return parsed == PARSE_HELP ? TOOL_OK : TOOL_USAGE;
     if (!options_are_sound(o, &shot.common) ||
+        (o->preset && !settings_set_preset(&shot.view.settings, o->preset)) ||
         !headless_settings(&shot.view.settings, o->path, o->view, &o->sets))
         return TOOL_USAGE;
     if (o->split.ways[0] && !split_begin(&shot.split, &o->split, &shot.view.settings, spec.command))

@@ -358,9 +358,9 @@ void app_internal_size(f32 scale, u32 width_px, u32 height_px, u32 *internal_wid
     *internal_height_px = (u32)CLAMP(height, APP_SIDE_MIN_PX, PACKET_SIDE_MAX);
 }
 
-// other: NULL = none is wanted.
+// other: NULL = none is wanted. cold: see SessionView.
 static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u32 height_px,
-                                   const Packet **other) {
+                                   bool cold, const Packet **other) {
     if (other) *other = NULL;
     session_frame_begin(&app->session);
     if (!app->session.world) return NULL;
@@ -369,7 +369,8 @@ static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u
     SessionView view = {.camera = camera,
                         .settings = app->settings,
                         .width_px = app->internal_width_px,
-                        .height_px = app->internal_height_px};
+                        .height_px = app->internal_height_px,
+                        .cold = cold};
     f64 start = clock_now_ms();
     const Packet *packet = NULL;
     if (!other || !app->split)
@@ -382,7 +383,8 @@ static const Packet *app_packet_of(App *app, const char *camera, u32 width_px, u
 }
 
 const Packet *app_packets(App *app, u32 width_px, u32 height_px, const Packet **other) {
-    return app_packet_of(app, app->camera[0] ? app->camera : NULL, width_px, height_px, other);
+    return app_packet_of(app, app->camera[0] ? app->camera : NULL, width_px, height_px, false,
+                         other);
 }
 
 const Packet *app_packet(App *app, u32 width_px, u32 height_px) {
@@ -391,7 +393,7 @@ const Packet *app_packet(App *app, u32 width_px, u32 height_px) {
 
 bool app_picture(App *app, const char *camera, u32 width_px, u32 height_px, RenderImage *out) {
     if (!app_upload_assets(app)) return false;
-    const Packet *other, *packet = app_packet_of(app, camera, width_px, height_px, &other);
+    const Packet *other, *packet = app_packet_of(app, camera, width_px, height_px, true, &other);
     if (!packet) return false;
     return other ? renderer_render_split(app->renderer, packet, other, &app->split_view,
                                          &app->session.frame, out)

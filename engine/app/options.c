@@ -15,6 +15,7 @@ typedef enum OptionKind {
     OPTION_NUMBER, // sets an f32
     OPTION_SIZE,   // WxH
     OPTION_SET,    // key=value of the render settings
+    OPTION_PRESET, // several of them by a name
     OPTION_SPLIT,  // two words
     OPTION_HELP,
 } OptionKind;
@@ -39,6 +40,8 @@ static const Option options_table[] = {
     {"--threads", "N", "threads for systems (default: all cores)", OPTION_COUNT, FIELD(threads)},
     {"--device", "NAME", "part of a device's name, e.g. llvmpipe", OPTION_TEXT, FIELD(device)},
     {"--validation", NULL, "check every Vulkan call", OPTION_FLAG, FIELD(validation)},
+    {"--preset", "NAME", "settings by a name (below); a later --set changes them", OPTION_PRESET,
+     0},
     {"--set", "KEY=VALUE", "a setting (below); may be given often", OPTION_SET, 0},
     {"--split", "A B", "draw two ways beside each other: forward deferred,layout=packed",
      OPTION_SPLIT, 0},
@@ -70,6 +73,9 @@ static void print_help(const char *program, const AppDesc *desc) {
         printf("  %-18s %s\n", left, option->help);
     }
     if (desc->help) printf("%s\n", desc->help);
+    printf("\npresets for --preset:\n");
+    for (u32 i = 0; i < setting_preset_count; i++)
+        printf("  %-18s %s\n", setting_presets[i].name, setting_presets[i].help);
     printf("\nsettings for --set:\n");
     for (u32 group = 0; group < SETTING_GROUP_COUNT; group++) {
         printf(" %s\n", setting_group_titles[group]);
@@ -134,6 +140,8 @@ static bool apply_option(const Option *option, const char *value, AppDesc *desc,
         desc->fixed_resolution |= strncmp(value, "scale=", 6) == 0;
         desc->fixed_resolution |= strncmp(value, "target_ms=", 10) == 0;
         return settings_set(&options->settings, value);
+    case OPTION_PRESET:
+        return settings_set_preset(&options->settings, value);
     case OPTION_SPLIT: // its words are read when all settings are known
     case OPTION_HELP:
         break;

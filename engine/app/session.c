@@ -392,7 +392,9 @@ static const Packet *build_packet(Session *session, const SessionView *view, Ent
                             .texts = view->texts,
                             .text_count = view->text_count,
                             .last_stamp = session->packet_stamp,
-                            .light_manager = session->light_manager};
+                            .light_manager = session->light_manager,
+                            .previous_gi = session->packet_stamp ? &session->packet_gi : NULL,
+                            .cold = view->cold};
     // After a cut to another camera nothing has moved on the picture.
     if (session->packet_stamp && session->packet_camera == camera)
         desc.previous_view_projection = session->packet_view_projection.m;
@@ -408,6 +410,7 @@ const Packet *session_packet(Session *session, const SessionView *view) {
     session->packet_camera = camera;
     memcpy(session->packet_view_projection.m, packet->frame.view_projection,
            sizeof session->packet_view_projection.m);
+    session->packet_gi = packet->gi;
     session->packet_stamp = session->world->stamp;
     world_advance_stamp(session->world);
     return packet;

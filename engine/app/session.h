@@ -58,6 +58,7 @@ struct Session {
     u32 packet_stamp;         // world stamp of the last packet
     Entity packet_camera;     // of the last packet, and its matrix
     Mat4 packet_view_projection;
+    PacketGi packet_gi;
     PacketBuildTimes packet_times;
     f32 tick_ms;
 };
@@ -84,6 +85,7 @@ typedef struct SessionView {
     u32 width_px, height_px; // internal resolution
     const PacketText2D *texts;
     u32 text_count;
+    bool cold; // a picture that is hashed or kept: it must not hang on earlier ones (PACKET_COLD)
 } SessionView;
 void session_frame_begin(Session *session); // resets the frame arena
 // Built in session->frame. NULL if there is no such camera (LOG USAGE lists those there are).

@@ -6,7 +6,7 @@
 // There is one layout for given counts (section after section in declaration order, each on a cache
 // line), and validation demands exactly that one: sections cannot overlap, leave holes or reach
 // outside, and two equal packets are equal bytes. Padding between sections is zero.
-#include "packet.h"
+#include "packet_check.h"
 #include <math.h>
 #include <string.h>
 
@@ -59,14 +59,6 @@ u32 packet_tree_levels(u32 light_count, u32 sizes[PACKET_TREE_LEVELS_CAP]) {
 
 // ---- validation ----
 
-static bool floats_finite(const void *data, u64 count) {
-    // An f32 is finite unless all its exponent bits are set: integer compares, no branches.
-    const u32 *bits = data;
-    u32 bad = 0;
-    for (u64 i = 0; i < count; i++) bad |= (bits[i] & 0x7F800000u) == 0x7F800000u;
-    return !bad;
-}
-
 static const char *check_layout(const Packet *packet, u64 size) {
     PacketSizes sizes = {
 #define X(name, Type) .name = packet->name.count,
@@ -85,7 +77,8 @@ static const char *check_layout(const Packet *packet, u64 size) {
 }
 
 static const char *check_header(const Packet *packet) {
-    if (packet->flags & ~(u32)(PACKET_REVOXELISE | PACKET_RELIGHT | PACKET_COLD)) return "unknown flags";
+    if (packet->flags & ~(u32)(PACKET_REVOXELISE | PACKET_RELIGHT | PACKET_COLD))
+        return "unknown flags";
     if (packet->reserved != 0) return "reserved field is not zero";
     if (packet->width_px < 1 || packet->width_px > PACKET_SIDE_MAX || packet->height_px < 1 ||
         packet->height_px > PACKET_SIDE_MAX)
@@ -412,6 +405,7 @@ const char *packet_validate(const void *block, u64 size, u32 mesh_count, u32 tex
     if (!problem) problem = check_lists(packet);
     if (!problem) problem = check_posts(packet);
     if (!problem) problem = check_manager(packet);
+    if (!problem) problem = packet_check_gi(packet, mesh_count);
     if (!problem) problem = check_texts(packet);
     return problem;
 }

@@ -256,6 +256,26 @@ bool settings_set_list(RenderSettings *settings, const char *list) {
     return true;
 }
 
+bool settings_set_preset(RenderSettings *settings, const char *name) {
+    Suggestion best = {.distance = UINT32_MAX};
+    u32 length = (u32)strnlen(name, NAME_CAP);
+    for (u32 i = 0; i < setting_preset_count; i++) {
+        const SettingPreset *preset = &setting_presets[i];
+        if (strcmp(preset->name, name) == 0) return settings_set_list(settings, preset->list);
+        suggestion_offer(&best, name, length, preset->name, (u32)strlen(preset->name));
+    }
+    char names[NAME_CAP * 4] = "";
+    for (u32 i = 0; i < setting_preset_count; i++) {
+        u64 used = strlen(names);
+        snprintf(names + used, sizeof names - used, " %s", setting_presets[i].name);
+    }
+    if (best.distance != UINT32_MAX)
+        LOG(RENDER_SETTING, "unknown preset '%.64s'; did you mean '%s'?", name, best.name);
+    else
+        LOG(RENDER_SETTING, "unknown preset '%.64s'; there are:%s", name, names);
+    return false;
+}
+
 // ---- effect ----
 
 // States of the other settings that give a setting something to do.
@@ -269,7 +289,16 @@ enum {
     WHEN_TILED_DEFERRED = 1 << 6,
     WHEN_VOLUMES = 1 << 7,
     WHEN_PACKED = 1 << 8,
+    WHEN_GI = 1 << 9, // or where the level may have it
+    WHEN_GI_VOXELS = 1 << 10,
+    WHEN_GI_BYTE = 1 << 11,
+    WHEN_GI_PROBES = 1 << 12,
+    WHEN_GI_EVERY_N = 1 << 13,
 };
+
+// Off for sure, or another word than the level's (0) and this one.
+static bool gi_is_off(const RenderSettings *s) { return s->gi_enabled == 1; }
+static bool word_may_be(u32 setting, u32 word) { return setting == 0 || setting == 1 + word; }
 
 bool setting_has_effect(const RenderSettings *s, const SettingDesc *desc) {
 #define ROW(name, when)                                                                            \
@@ -295,6 +324,14 @@ bool setting_has_effect(const RenderSettings *s, const SettingDesc *desc) {
         ROW(light_volume, WHEN_VOLUMES),
         ROW(light_branch, WHEN_VOLUMES),
         ROW(normal_lookup, WHEN_PACKED),
+        ROW(gi_enabled, WHEN_DEFERRED | WHEN_FORWARD),
+        ROW(gi_show, WHEN_GI_VOXELS),
+        ROW(gi_show_level, WHEN_GI_VOXELS),
+        ROW(gi_show_direction, WHEN_GI_VOXELS),
+        ROW(gi_byte_radiance, WHEN_GI_BYTE),
+        ROW(gi_share, WHEN_GI_PROBES),
+        ROW(gi_probe_spacing, WHEN_GI_PROBES),
+        ROW(gi_every_n, WHEN_GI_EVERY_N),
     };
 #undef ROW
     bool deferred = s->path == PATH_DEFERRED || s->path == PATH_DEFERRED_VOLUMES ||
@@ -308,8 +345,16 @@ bool setting_has_effect(const RenderSettings *s, const SettingDesc *desc) {
     if (s->path == PATH_TILED_DEFERRED) state |= WHEN_TILED_DEFERRED;
     if (s->path == PATH_DEFERRED_VOLUMES) state |= WHEN_VOLUMES;
     if (deferred && packed) state |= WHEN_PACKED;
+    if (!gi_is_off(s)) {
+        state |= WHEN_GI;
+        if (s->view == VIEW_GI_VOXELS) state |= WHEN_GI_VOXELS;
+        if (word_may_be(s->gi_format, GI_FORMAT_BYTE)) state |= WHEN_GI_BYTE;
+        if (word_may_be(s->gi_diffuse, GI_DIFFUSE_PROBES)) state |= WHEN_GI_PROBES;
+        if (word_may_be(s->gi_policy, GI_POLICY_EVERY_N)) state |= WHEN_GI_EVERY_N;
+    }
     for (u32 i = 0; i < COUNT_OF(rows); i++)
         if (rows[i][0] == desc->offset) return (state & rows[i][1]) != 0;
+    if (desc->group == SETTING_GROUP_GI) return (state & WHEN_GI) != 0;
     return true;
 }
 

@@ -77,6 +77,9 @@ static RenderSettings keep_settings(const RenderSettings *asked, const RenderSet
     KEEP(exposure);
     KEEP(light_gain);
     KEEP(light_limit);
+#define KEEP_GI(name, ...) KEEP(gi_##name);
+    GI_PARAMS(KEEP_GI, KEEP_GI, KEEP_GI, KEEP_GI)
+#undef KEEP_GI
 #undef KEEP
     settings_clamp(&s);
     return s;
@@ -104,6 +107,11 @@ const Packet *packet_relist(const Packet *packet, const RenderSettings *settings
     copy->size = laid_out.size;
     copy->settings = merged;
     copy->frame = frame;
+    if (copy->gi.params.enabled) {
+        copy->gi.record.show[0] = merged.gi_show;
+        copy->gi.record.show[1] = merged.gi_show_level;
+        copy->gi.record.show[2] = merged.gi_show_direction;
+    }
 #define X(name, Type)                                                                              \
     copy->name = laid_out.name;                                                                    \
     if (copy->name.count == packet->name.count)                                                    \

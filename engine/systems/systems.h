@@ -155,7 +155,8 @@ const Packet *packet_build(const PacketBuildDesc *desc, Arena *out, Arena *scrat
 // The same frame to be drawn in another way (packet_lists.c): a copy with the path and the other
 // settings of drawing taken over and the light lists made anew for them. Settings that shaped the
 // rest of the packet when it was built (scale, culling, detail, shadows, the light manager's,
-// exposure, gain, limit) keep its values. The packet must be valid; the copy lies in `out`.
+// exposure, gain, limit, GI's but for what is shown of voxels) keep its values. The packet must be
+// valid; the copy lies in `out`.
 const Packet *packet_relist(const Packet *packet, const RenderSettings *settings, Arena *out,
                             Arena *scratch);
 

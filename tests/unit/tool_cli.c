@@ -135,7 +135,7 @@ TEST(tool_cli, mistakes_of_split) {
 
 // Settings come in groups, each once.
 TEST(tool_cli, info_lists_settings_by_group) {
-    Run run = luz("2>&1", "info | sed -n '/settings (/,$p'");
+    Run run = luz("2>&1", "info | sed -n '/settings (/,$p' | grep -v '^ '");
     const char *at = run.output;
     static const char *const groups[] = {"\npicture\n", "\nlight manager\n", "\nlight lists\n",
                                          "\npost chain\n"};
