@@ -9,6 +9,7 @@
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
 #include "common.glsl"
+#include "attenuation.glsl"
 
 layout(std430, set = 0, binding = BINDING_LIGHTS) readonly buffer LightBuffer {
     LightRecord lights[];
@@ -128,13 +129,7 @@ float attenuation_lookup(float d2, float inv_d, float x) {
 float attenuation(float d2, float inv_d, float inv_range2) {
     float x = d2 * inv_range2;
     if (ATTENUATION_LOOKUP != 0u) return attenuation_lookup(d2, inv_d, x);
-    if (ATTENUATION == 1u) return clamp(1.0 - x, 0.0, 1.0);
-    if (ATTENUATION == 2u) {
-        vec3 k = frame.attenuation.xyz;
-        return clamp(1.0 - x, 0.0, 1.0) / (k.x + k.y * (d2 * inv_d) + k.z * d2);
-    }
-    float window = clamp(1.0 - x * x, 0.0, 1.0);
-    return window * window * min(inv_d * inv_d, 1e4); // 1 / max(d, 1 cm)^2
+    return attenuation_exact(d2, inv_d, x, frame.attenuation.xyz);
 }
 
 // How a light's rays arrive at a surface: unit direction to the light, n.l, and the falloff times
@@ -152,11 +147,6 @@ Arrival light_arrival(Surface s, vec4 position) {
     a.n_dot_l = max(dot(s.normal, a.l), 0.0);
     a.falloff = attenuation(d2, inv_d, position.w) * a.n_dot_l;
     return a;
-}
-// Share of a spot's light in direction -l. edge: SpotRecord.edge.x.
-float spot_cone(vec3 l, vec4 direction, float edge) {
-    float t = clamp((-dot(l, direction.xyz) - direction.w) * edge, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
 }
 
 vec3 light_point(Surface s, vec4 position, vec4 color) {

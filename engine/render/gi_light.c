@@ -1,0 +1,136 @@
+// gi_light.c: occupied voxels are lit: what they send out goes to RADIANCE, with faces shared to
+// the base volume too; then one bounce more, and what arrives at each voxel, for surfaces to look
+// up.
+//
+// Data in: places and attributes by slot, masks (for rays), the packet's lights and their lists
+// over the volume, the shadow map; for bounces the filtered images. Data out: GI_RADIANCE, GI_BASE,
+// GI_VISIBILITY, GI_IRRADIANCE. Called by the pass table. Does not: filter (gi_filter.c), or decide
+// whether anything is to be lit (GiState.relight).
+//
+// Bounces. Without feedback: light, filter, bounce (reads the images, adds to RADIANCE), filter.
+// With feedback light bounces on from frame to frame: what went round so far is kept in the images
+// alone. So the frame's light leaves them as they are and only starts RADIANCE anew; the bounce
+// adds what it reads of the last frame's images; one filter writes the sum. A light that moves or
+// goes out takes its bounces along within a few frames. A frame that must not hang on earlier ones
+// (PACKET_COLD, or nothing there) makes all rounds by itself.
+#include "passes.h"
+
+// Each round after the first counts at most the walls' albedo times what the one before did: of
+// walls with 0.7, this many reach three quarters of all light that goes round.
+#define FEEDBACK_ROUNDS 4
+
+enum { STEP_LIGHT, STEP_KEEP_BASE, STEP_CLEAR_VISIBILITY, STEP_STORE_BASE }; // gi_light.glsl
+enum { STEP_BOUNCE, STEP_FEEDBACK };                                         // gi_bounce.comp
+
+static bool is_relit(const PassContext *c) { return gi_is_on(c) && c->renderer->gi.relight; }
+static bool has_base(const PassContext *c) { return c->packet->gi.params.faces == GI_FACES_SHARED; }
+
+bool gi_bounces(const PassContext *c) {
+    const GiParams *params = &c->packet->gi.params;
+    return is_relit(c) && (params->bounces > 1 || params->feedback);
+}
+bool gi_feeds_back(const PassContext *c) {
+    return is_relit(c) && c->packet->gi.params.feedback && !c->renderer->gi.is_cold;
+}
+
+// One invocation a slot.
+static void by_slot(const PassContext *c, PipelineKind kind, u32 step) {
+    GpuPipeline pipeline =
+        pipeline_get(c->renderer, c->packet, kind, (PipelineVariant){.post = step});
+    if (!pipeline.id) return;
+    gi_bind_build(c, pipeline, 0);
+    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
+                              GI_COUNTER_ALL_ARGS * sizeof(u32));
+}
+
+// --- Light ---
+
+static void clear_visibility(const PassContext *c) {
+    const u32 *dims = c->packet->gi.record.dims;
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_LIGHT,
+                                        (PipelineVariant){.post = STEP_CLEAR_VISIBILITY});
+    if (!pipeline.id) return;
+    gi_bind_build(c, pipeline, 0);
+    gpu_cmd_dispatch(c->cmd, (dims[0] + 63) / 64, dims[1], dims[2] * dims[3]);
+    gi_barrier(c, (RenderResource[]){RESOURCE_GI_VISIBILITY}, 1);
+}
+
+static void light_record(const PassContext *c) {
+    const GiState *gi = &c->renderer->gi;
+    if (gi->is_fresh && (gi->voxel_shadows & GI_VISIBILITY_KEPT)) clear_visibility(c);
+    by_slot(c, PIPELINE_GI_LIGHT, gi_feeds_back(c) ? STEP_KEEP_BASE : STEP_LIGHT);
+}
+static void light_again_record(const PassContext *c) {
+    by_slot(c, PIPELINE_GI_LIGHT, STEP_KEEP_BASE);
+}
+static void store_record(const PassContext *c) { by_slot(c, PIPELINE_GI_LIGHT, STEP_STORE_BASE); }
+
+#define LIGHT_USES                                                                                 \
+    {                                                                                              \
+        USE(GI_MASKS, STORAGE_READ_COMPUTE), USE(GI_VOXELS, STORAGE_READ_COMPUTE),                 \
+            USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE), USE(GI_RADIANCE, STORAGE_COMPUTE),           \
+            USE(GI_COUNTERS, INDIRECT), USE(GI_BASE, STORAGE_COMPUTE),                             \
+            USE(GI_VISIBILITY, STORAGE_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE)                  \
+    }
+const Pass gi_light_pass = {"voxel light", LIGHT_USES, 8, light_record, is_relit, NULL};
+static const Pass light_again_pass = {"voxel light again", LIGHT_USES, 8,
+                                      light_again_record,  NULL,       NULL};
+static const Pass store_pass = {"voxel bounce store", LIGHT_USES, 8, store_record, has_base, NULL};
+
+// --- Bounces ---
+
+static void gather_record(const PassContext *c) {
+    by_slot(c, PIPELINE_GI_BOUNCE, c->packet->gi.params.feedback ? STEP_FEEDBACK : STEP_BOUNCE);
+}
+#define GATHER_USES                                                                                \
+    USE(GI_VOXELS, STORAGE_READ_COMPUTE), USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE),                \
+        USE(GI_COUNTERS, INDIRECT), USE(GI_BASE, SAMPLED_COMPUTE), USE(GI_ATLAS, SAMPLED_COMPUTE)
+static const Pass gather_pass = {
+    "voxel bounce", {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE)}, 6, gather_record, NULL, NULL};
+
+static void bounce_expand(const PassContext *c) {
+    bool all_rounds = c->packet->gi.params.feedback && !gi_feeds_back(c);
+    for (u32 round = 0; round < (all_rounds ? FEEDBACK_ROUNDS : 1); round++) {
+        if (round > 0) {
+            pass_run(c, &gi_refilter_pass);
+            pass_run(c, &light_again_pass);
+        }
+        pass_run(c, &gather_pass);
+        pass_run(c, &store_pass);
+    }
+}
+const Pass gi_bounce_pass = {.name = "voxel bounce", .needed = gi_bounces, .expand = bounce_expand};
+
+// --- Irradiance ---
+
+static bool wants_irradiance(const PassContext *c) {
+    const RenderSettings *settings = &c->packet->settings;
+    return is_relit(c) &&
+           (c->packet->gi.params.diffuse == GI_DIFFUSE_VOXELS ||
+            (settings->view == VIEW_GI_VOXELS && settings->gi_show == GI_SHOW_IRRADIANCE));
+}
+static bool irradiance_is_fresh(const PassContext *c) {
+    return wants_irradiance(c) && c->renderer->gi.is_fresh;
+}
+static void irradiance_clear_record(const PassContext *c) {
+    gpu_cmd_clear_texture(c->cmd, c->renderer->targets[RESOURCE_GI_IRRADIANCE]);
+}
+static void irradiance_record(const PassContext *c) { by_slot(c, PIPELINE_GI_IRRADIANCE, 0); }
+static const Pass irradiance_clear_pass = {"voxel irradiance start",
+                                           {OVERWRITE(GI_IRRADIANCE, COPY_TARGET)},
+                                           1,
+                                           irradiance_clear_record,
+                                           irradiance_is_fresh,
+                                           NULL};
+static const Pass irradiance_gather_pass = {"voxel irradiance",
+                                            {GATHER_USES, USE(GI_IRRADIANCE, STORAGE_COMPUTE)},
+                                            6,
+                                            irradiance_record,
+                                            NULL,
+                                            NULL};
+static void irradiance_expand(const PassContext *c) {
+    pass_run(c, &irradiance_clear_pass);
+    pass_run(c, &irradiance_gather_pass);
+}
+const Pass gi_irradiance_pass = {
+    .name = "voxel irradiance", .needed = wants_irradiance, .expand = irradiance_expand};

@@ -1,0 +1,195 @@
+// gi_light.glsl: light that voxels send out (specification of voxel GI, 4): emission + albedo / pi *
+// sum over lights of colour * falloff * cosine * visibility. One invocation a slot; a subgroup takes
+// the cells of the light grid that its slots lie in one after the other, so that each light is
+// loaded once for all of them. A voxel's sum runs over its cell's list in order, whatever the size
+// of a subgroup, and lights out of reach add 0: the same bits as with all lights in one list.
+//
+// Cosine, by faces. Face f sees max(+-l_axis, 0). shared: `average` takes the mean normal N instead,
+// `weighted` the faces on N's side, each counted with N_axis^2; where normals cancel out (thin
+// walls) the faces count by how much of the surface they have. apart: six sums; a face that the
+// surface does not have sends nothing.
+// Included by gi_light.comp and gi_light_byte.comp.
+#define GI_BUILD
+#include "subgroups.glsl"
+#include "gi.glsl"
+#include "gi_voxel.glsl"
+#include "gi_visibility.glsl"
+layout(constant_id = SPEC_ATTENUATION) const uint ATTENUATION = 0;
+layout(constant_id = SPEC_SHADOW) const uint SHADOW = 0;
+layout(constant_id = SPEC_DIRECTIONALS) const uint DIRECTIONAL_COUNT = 0;
+#include "attenuation.glsl"
+layout(local_size_x = 64) in;
+
+layout(std140, set = 0, binding = BUILD_FRAME) uniform GiFrameBuffer { FrameRecord gi_frame; };
+layout(std140, set = 0, binding = BUILD_DIRECTIONALS) uniform GiDirectionalBuffer {
+    DirectionalRecord gi_directionals[DIRECTIONALS_CAP];
+};
+layout(std430, set = 0, binding = BUILD_LIGHTS) readonly buffer GiLightBuffer {
+    GiLightRecord gi_lights[];
+};
+layout(std430, set = 0, binding = BUILD_LISTS) readonly buffer GiListBuffer { uint gi_lists[]; };
+layout(set = 0, binding = BUILD_SHADOW_MAP) uniform sampler2DShadow gi_shadow_map;
+layout(set = 0, binding = BUILD_BASE_STORAGE, GI_STORAGE_FORMAT) writeonly uniform image3D
+    gi_base_storage;
+layout(set = 0, binding = BUILD_VISIBILITY, r8) writeonly uniform image3D gi_visibility_storage;
+
+const uint SHADOW_MAP = 1u, SHADOW_RAY = 2u, SHADOW_SOFT_RAY = 3u; // VoxelShadow
+const bool HAS_RAYS = (GI_VISIBILITY & (1u << SHADOW_RAY | 1u << SHADOW_SOFT_RAY)) != 0u;
+const float PI = 3.14159265358979;
+// Steps: 0 light; 1 light, but the base volume stays as it is, which the bounce still reads; 2 the
+// whole image of visibility becomes 1; 3 RADIANCE goes to the base volume (faces shared).
+const uint STEP_KEEP_BASE = 1u, STEP_CLEAR_VISIBILITY = 2u, STEP_STORE_BASE = 3u;
+
+vec3 light[6];     // sums; faces shared: the first alone
+float asked, seen; // lights that arrive and may be hidden; how much of them is seen
+
+// How a voxel as a whole faces a light; 0 = it does not.
+float cosine(vec3 l) {
+    if (GI_FACES == 0u && GI_COSINE == 0u && normal != vec3(0.0)) return max(dot(normal, l), 0.0);
+    return dot(ahead, max(l, vec3(0.0))) + dot(behind, max(-l, vec3(0.0)));
+}
+
+// Light of this irradiance (across its rays) from unit direction l.
+void voxel_add(vec3 irradiance, vec3 l, float facing) {
+    if (GI_FACES == 0u) {
+        light[0] += irradiance * facing;
+        return;
+    }
+    vec3 p = max(l, vec3(0.0)), q = max(-l, vec3(0.0));
+    light[0] += irradiance * p.x;
+    light[1] += irradiance * q.x;
+    light[2] += irradiance * p.y;
+    light[3] += irradiance * q.y;
+    light[4] += irradiance * p.z;
+    light[5] += irradiance * q.z;
+}
+
+// Share of a light that arrives, and the books of it. reach: m to the light.
+float voxel_visibility(uint way, vec3 l, float reach, bool arrives) {
+    if (!HAS_RAYS) return 1.0;
+    bool is_asked = arrives && way >= SHADOW_RAY;
+    float visible = gi_ray(position, cascade, l, reach, way == SHADOW_SOFT_RAY, is_asked);
+    asked += is_asked ? 1.0 : 0.0;
+    seen += is_asked ? visible : 0.0;
+    return visible;
+}
+
+// --- Lights ---
+
+void add_local(GiLightRecord a) {
+    vec3 to_light = a.position.xyz - position;
+    float d2 = max(dot(to_light, to_light), 1e-8), inv_d = inversesqrt(d2);
+    vec3 l = to_light * inv_d;
+    float falloff = attenuation_exact(d2, inv_d, d2 * a.position.w, gi_frame.attenuation.xyz);
+    falloff *= a.extra.y != 0.0 ? spot_cone(l, a.direction, a.extra.x) : 1.0;
+    float facing = cosine(l);
+    falloff *= voxel_visibility(uint(a.color.w), l, d2 * inv_d, falloff * facing > 0.0);
+    voxel_add(a.color.rgb * falloff, l, facing);
+}
+
+// Lights [first, first + count) of the lists, the same for all lanes; for those lanes whose turn it
+// is.
+void add_list(uint first, uint count, bool is_mine) {
+    for (uint b = 0u; b < count; b += gl_SubgroupSize) {
+        GiLightRecord own =
+            gi_lights[gi_lists[first + min(b + gl_SubgroupInvocationID, count - 1u)]];
+        uint end = min(gl_SubgroupSize, count - b);
+        for (uint j = 0u; j < end; j++) {
+            GiLightRecord a;
+            a.position = subgroupShuffle(own.position, j);
+            a.color = subgroupShuffle(own.color, j);
+            a.direction = subgroupShuffle(own.direction, j);
+            a.extra.xy = subgroupShuffle(own.extra.xy, j);
+            // Out of reach of everybody else.
+            a.position.w = is_mine ? a.position.w : 1e30;
+            add_local(a);
+        }
+    }
+}
+
+void add_locals() {
+    vec3 cell = (position - gi.light_grid_origin.xyz) * gi.light_grid_rate.xyz;
+    uvec3 at = uvec3(clamp(cell, vec3(0.0), vec3(gi.light_grid.xyz) - 1.0));
+    uint index = at.x + gi.light_grid.x * (at.y + gi.light_grid.y * at.z);
+    uint next = subgroupMin(index);
+    while (next != 0xffffffffu) {
+        uint count = gi_lists[2u * next + 1u];
+        add_list(gi_lists[2u * next], count, index == next);
+        next = subgroupMin(index > next ? index : 0xffffffffu);
+    }
+}
+
+// The shadow map tells about a point half a voxel off the surface; voxels that it does not cover
+// are lit.
+float map_visibility() {
+    vec3 moved = position + normal * (0.5 * gi.origin[cascade].w);
+    vec4 p = gi_frame.shadow_matrix * vec4(moved, 1.0);
+    vec3 uv = vec3(p.x * 0.5 + 0.5, 0.5 - p.y * 0.5, p.z + gi_frame.shadow.w);
+    bool inside = all(lessThan(abs(p.xy), vec2(1.0))) && p.z > 0.0 && p.z < 1.0;
+    float visible = textureLod(gi_shadow_map, uv, 0.0);
+    return inside ? visible : 1.0;
+}
+
+void add_directionals() {
+    bool has_map = SHADOW != 0u && (GI_VISIBILITY & 1u << SHADOW_MAP) != 0u;
+    float mapped = has_map ? map_visibility() : 1.0;
+    for (uint i = 0u; i < DIRECTIONAL_COUNT; i++) {
+        vec4 direction = gi_directionals[i].direction, color = gi_directionals[i].color;
+        float facing = direction.w < 0.0 ? 0.0 : cosine(direction.xyz);
+        uint way = uint(max(direction.w, 0.0));
+        float visible = voxel_visibility(way, direction.xyz, 1e30, facing > 0.0);
+        bool by_map = has_map && way == SHADOW_MAP && color.w > 0.0;
+        visible = by_map ? mapped : visible;
+        asked += by_map && facing > 0.0 ? 1.0 : 0.0;
+        seen += by_map && facing > 0.0 ? mapped : 0.0;
+        voxel_add(direction.w < 0.0 ? vec3(0.0) : color.rgb * visible, direction.xyz, facing);
+    }
+}
+
+// --- The result ---
+
+void store(uint slot) {
+    uvec3 place = gi_unpack_place(gi_voxels[slot]);
+    vec3 albedo = voxel_albedo(slot);
+    vec3 emission = gi_unpack_emission(gi_attribute(slot, GI_ATTRIBUTE_EMISSION));
+    if (GI_FACES != 0u) {
+        for (uint f = 0u; f < 6u; f++) {
+            vec3 sent = emission + albedo * light[f] * (1.0 / PI);
+            gi_store_radiance(slot, f, vec4(sent * voxel_face(f), 1.0));
+        }
+    } else {
+        vec4 radiance = vec4(emission + albedo * light[0] * (1.0 / PI), 1.0);
+        gi_store_radiance(slot, 0u, radiance);
+        if (GI_STEP != STEP_KEEP_BASE)
+            imageStore(gi_base_storage, ivec3(place), gi_encode(radiance));
+    }
+    if ((GI_VISIBILITY & GI_VISIBILITY_KEPT) != 0u)
+        imageStore(gi_visibility_storage, ivec3(place), vec4(asked > 0.0 ? seen / asked : 1.0));
+}
+
+void store_base(uint slot) {
+    uvec3 place = gi_unpack_place(gi_voxels[slot]);
+    imageStore(gi_base_storage, ivec3(place), gi_encode(gi_load_radiance(slot, 0u)));
+}
+
+void main() {
+    if (GI_STEP == STEP_CLEAR_VISIBILITY) {
+        ivec3 place = ivec3(gl_GlobalInvocationID);
+        if (place.x < imageSize(gi_visibility_storage).x)
+            imageStore(gi_visibility_storage, place, vec4(1.0));
+        return;
+    }
+    uint count = voxel_count();
+    if (gl_WorkGroupID.x * gl_WorkGroupSize.x >= count) return;
+    if (GI_STEP == STEP_STORE_BASE) {
+        if (gl_GlobalInvocationID.x < count) store_base(gl_GlobalInvocationID.x);
+        return;
+    }
+    // All lanes stay on: what they load is shared.
+    voxel_load(min(gl_GlobalInvocationID.x, count - 1u));
+    for (int f = 0; f < 6; f++) light[f] = vec3(0.0);
+    asked = seen = 0.0;
+    add_directionals();
+    add_locals();
+    if (gl_GlobalInvocationID.x < count) store(gl_GlobalInvocationID.x);
+}
