@@ -149,7 +149,10 @@ u32 gi_find_flags(const World *world, const PacketGi *gi, const PacketGi *previo
         table_changed_since(&WORLD_TABLE(world, Material, material)->table, since))
         flags |= PACKET_RELIGHT;
     // A material's stamp does not tell whether it was more than its emission; the keys do.
-    if (voxelised_changed(world, has_gi, has_gi && !previous, since)) flags |= PACKET_REVOXELISE;
+    if (voxelised_changed(world, has_gi, has_gi && !previous, since)) {
+        flags |= PACKET_REVOXELISE;
+        if (has_gi && !previous) flags |= PACKET_RELIGHT; // what came or went may have shone
+    }
     if (has_gi && table_changed_since(&WORLD_TABLE(world, Environment, environment)->table, since))
         flags |= PACKET_RELIGHT;
     if (table_changed_since(&WORLD_TABLE(world, Gi, gi)->table, since))

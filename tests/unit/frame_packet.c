@@ -3,6 +3,7 @@
 #include "systems_fixture.h"
 #include "../test.h"
 #include "../../engine/base/random.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@ static const Packet *make_packet(SystemsFixture *f, u32 count) {
     return fixture_packet(f, ENTITY_NONE, settings_default(), 320, 200, 0);
 }
 
+#define VOXEL_SHADOW_LAST 3 // soft_ray
 #define NEED(x)                                                                                    \
     if (!(x)) return #x
 
@@ -50,6 +52,58 @@ static const char *walk_trees(const Packet *p) {
         }
     }
     NEED(lights == points + spots);
+    return NULL;
+}
+
+// Reads what passes over voxels read.
+static const char *check_voxels_plainly(const Packet *p, u32 mesh_count) {
+    const GiRecord *r = &p->gi.record;
+    u64 drawn = 0;
+    NEED(p->gi.params.enabled || (p->gi_lists.count == 0 && p->traced_lights.count == 0));
+    NEED(p->traced_lights.count <= GI_TRACED_CAP && r->counts[0] == p->traced_lights.count);
+    const PacketSection draws[] = {p->gi_static_draws, p->gi_dynamic_draws};
+    for (u32 list = 0; list < COUNT_OF(draws); list++) {
+        for (u32 i = 0; i < draws[list].count; i++) {
+            const PacketDraw *d = (const PacketDraw *)((const u8 *)p + draws[list].offset) + i;
+            NEED(d->mesh < mesh_count && d->material < p->materials.count && d->lod == 0);
+            NEED((u64)d->first_instance + d->instance_count <= p->gi_instances.count);
+            drawn += d->instance_count;
+        }
+    }
+    NEED(drawn == p->gi_instances.count);
+    for (u32 i = 0; i < p->gi_instances.count; i++) {
+        const InstanceRecord *instance = PACKET_DATA(p, gi_instances, InstanceRecord) + i;
+        NEED(instance->ids[0] < p->materials.count);
+        for (u32 k = 0; k < 12; k++) NEED(isfinite(instance->world[k / 4][k % 4]));
+    }
+    for (u32 i = 0; i < p->directionals.count; i++) {
+        f32 shadow = PACKET_DATA(p, directionals, DirectionalRecord)[i].direction[3];
+        NEED(shadow >= -1 && shadow <= VOXEL_SHADOW_LAST && shadow == (f32)(i32)shadow);
+    }
+    if (!p->gi.params.enabled) return NULL;
+    NEED(r->dims[3] >= 1 && r->dims[3] <= GI_CASCADES_CAP && r->atlas[3] >= 1);
+    for (u32 a = 0; a < 3; a++) {
+        NEED(r->dims[a] >= 8 && r->dims[a] <= 512 && (r->dims[a] & (r->dims[a] - 1)) == 0);
+        NEED(r->atlas[a] == r->dims[a] || r->atlas[a] == r->dims[a] / 2);
+        NEED(r->atlas[a] >> (r->atlas[3] - 1) >= 1 && r->probes[a] >= 1 && r->probes[a] <= 64);
+        NEED(r->light_grid[a] >= 1 && r->light_grid[a] <= 32);
+        NEED(isfinite(r->light_grid_rate[a]) && isfinite(r->origin[r->dims[3] - 1][a]));
+    }
+    for (u32 c = 0; c < r->dims[3]; c++) NEED(r->origin[c][3] > 0 && isfinite(r->origin[c][3]));
+    NEED(r->trace[0] >= 1 && r->trace[0] <= p->width_px && r->trace[1] <= p->height_px);
+    // Nothing that steps without an end.
+    NEED(r->cone[0] > 0.05f && r->cone[1] >= 0.1f && r->cone[2] > 0 && r->specular[0] > 0.005f);
+    NEED(isfinite(r->cone[2]) && isfinite(r->cone[3]) && isfinite(r->strength[0]));
+    u64 cells = (u64)r->light_grid[0] * r->light_grid[1] * r->light_grid[2];
+    const u32 *words = PACKET_DATA(p, gi_lists, u32);
+    NEED(p->gi_lists.count >= 2 * cells);
+    for (u64 i = 0; i < cells; i++) {
+        NEED((u64)words[2 * i] + words[2 * i + 1] <= p->gi_lists.count);
+        for (u32 k = 0; k < words[2 * i + 1]; k++)
+            NEED(words[words[2 * i] + k] < p->gi_lights.count);
+    }
+    for (u32 i = 0; i < p->traced_lights.count; i++)
+        NEED(PACKET_DATA(p, traced_lights, TracedLightRecord)[i].shadow[0] > 0.0005f);
     return NULL;
 }
 
@@ -109,8 +163,8 @@ static const char *check_plainly(const u8 *block, u64 size, u32 mesh_count, u32 
          (p->cells.count == 0 && settings_lists_on_device(&p->settings) &&
           p->blend_draws.count == 0));
     NEED(p->frame.counts3[0] <= p->frame.counts[0] && p->frame.counts3[1] <= p->frame.counts[1]);
-    const char *tree = walk_trees(p);
-    if (tree) return tree;
+    const char *tree = walk_trees(p), *voxels = check_voxels_plainly(p, mesh_count);
+    if (tree || voxels) return tree ? tree : voxels;
     for (u32 t = 0; t < p->cells.count; t++) {
         const u32 *list = PACKET_DATA(p, cells, CellRecord)[t].list;
         NEED((u64)list[0] + list[1] + list[2] <= p->light_indices.count);
@@ -285,6 +339,32 @@ TEST(frame_packet, damaged_hierarchies_are_refused_or_safe) {
     systems_fixture_destroy(f);
 }
 
+// With global illumination: nested grids, lights whose shadows come from the voxels.
+static const Packet *make_voxels(SystemsFixture *f, u32 count) {
+    fixture_fill(f, 0xF17A, count);
+    LightTable *light = FIXTURE_TABLE(f, Light, light);
+    for (u32 row = 0; row < light->table.count; row++)
+        light->screen_shadow[row] = row % 3, light->voxel_shadow[row] = row % 5;
+    f->world->tick = 99;
+    systems_settle(&f->systems, &f->context);
+    RenderSettings settings = settings_default();
+    assert_true(settings_set_list(&settings, "gi.enabled=on,gi.cascades=2,gi.grid=32"));
+    return fixture_packet(f, ENTITY_NONE, settings, 320, 200, 0);
+}
+
+TEST(frame_packet, damaged_voxels_are_refused_or_safe) {
+    const u64 seed = 0xBADF00F;
+    printf("seed %llx\n", (unsigned long long)seed);
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *p = make_voxels(f, 24);
+    assert_true(p->gi_static_draws.count && p->gi_dynamic_draws.count && p->gi_lights.count);
+    assert_true(p->traced_lights.count > 2 && p->directionals.count > p->frame.counts[2]);
+    assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    assert_null(check_plainly((const u8 *)p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    damage_many(p, seed, 20000);
+    systems_fixture_destroy(f);
+}
+
 // Every index field by itself, one too large and far too large.
 TEST(frame_packet, each_index_is_checked) {
     SystemsFixture *f = systems_fixture_create(1);
@@ -347,6 +427,73 @@ TEST(frame_packet, each_index_is_checked) {
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts2[i], p->frame.counts2[i] + 1);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.counts3[i], p->frame.counts3[i] + 1);
     for (u32 i = 0; i < 4; i++) TOO_LARGE(p->frame.grid[i], p->frame.grid[i] + 1);
+    assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    free(p);
+    systems_fixture_destroy(f);
+}
+
+TEST(frame_packet, each_index_of_voxels_is_checked) {
+    SystemsFixture *f = systems_fixture_create(1);
+    const Packet *good = make_voxels(f, 60);
+    Packet *p = malloc(good->size);
+    memcpy(p, good, good->size);
+    PacketSection lists[] = {p->gi_static_draws, p->gi_dynamic_draws};
+    for (u32 i = 0; i < 2; i++) {
+        PacketDraw *d = (PacketDraw *)((u8 *)p + lists[i].offset) + lists[i].count - 1;
+        TOO_LARGE(d->mesh, FIXTURE_MESH_COUNT);
+        TOO_LARGE(d->material, p->materials.count);
+        TOO_LARGE(d->lod, 1);
+        TOO_LARGE(d->first_instance, d->first_instance + 1);
+        TOO_LARGE(d->instance_count, d->instance_count + 1);
+    }
+    TOO_LARGE(PACKET_WRITE(p, gi_instances, InstanceRecord)[2].ids[0], p->materials.count);
+    u32 *words = PACKET_WRITE(p, gi_lists, u32);
+    GiRecord *r = &p->gi.record;
+    u32 cells = r->light_grid[0] * r->light_grid[1] * r->light_grid[2];
+    TOO_LARGE(words[0], words[0] + 1);
+    TOO_LARGE(words[2 * cells - 1], words[2 * cells - 1] + 1);
+    TOO_LARGE(words[2 * cells], p->gi_lights.count);
+    TOO_LARGE(words[p->gi_lists.count - 1], p->gi_lights.count);
+    for (u32 i = 0; i < 4; i++) {
+        TOO_LARGE(r->dims[i], r->dims[i] + 1);
+        TOO_LARGE(r->atlas[i], r->atlas[i] + 1);
+        TOO_LARGE(r->light_grid[i], r->light_grid[i] + 1);
+        TOO_LARGE(r->counts[i], r->counts[i] + 1);
+        TOO_LARGE(r->probes[i], 65);
+    }
+    TOO_LARGE(r->show[0], GI_SHOW_COUNT);
+    TOO_LARGE(r->show[1], 10);
+    TOO_LARGE(r->show[2], 6);
+    TOO_LARGE(p->gi.params.enabled, 2);
+    TOO_LARGE(p->gi.params.diffuse, GI_DIFFUSE_VOXELS + 1);
+    TOO_LARGE(p->gi.params.grid, 5);
+    TOO_LARGE(p->gi.params.cascades, 3);
+    TOO_LARGE(p->gi.params.every_n, 3601);
+    TOO_LARGE(p->frame.counts[2], p->directionals.count + 1);
+    // Numbers that would stall a shader, or place nothing anywhere.
+    f32 *const numbers[] = {&r->cone[0],
+                            &r->cone[1],
+                            &r->cone[2],
+                            &r->origin[0][3],
+                            &r->specular[0],
+                            &r->light_grid_rate[1],
+                            &r->trace[0],
+                            &r->probe_origin[3],
+                            &PACKET_WRITE(p, traced_lights, TracedLightRecord)[0].shadow[0]};
+    static const f32 evil[] = {0.0f, -1.0f, 1e-12f, 1e20f, INFINITY, NAN};
+    for (u32 i = 0; i < COUNT_OF(numbers); i++) {
+        f32 kept = *numbers[i];
+        for (u32 k = 0; k < COUNT_OF(evil); k++) {
+            *numbers[i] = evil[k];
+            if (!packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT))
+                fail_msg("number %u = %g was taken", i, (f64)evil[k]);
+        }
+        *numbers[i] = kept;
+    }
+    // What is off has nothing.
+    p->gi.params.enabled = 0;
+    assert_non_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
+    p->gi.params.enabled = 1;
     assert_null(packet_validate(p, p->size, FIXTURE_MESH_COUNT, FIXTURE_TEXTURE_COUNT));
     free(p);
     systems_fixture_destroy(f);

@@ -3,6 +3,8 @@
 #include "../../engine/base/log.h"
 #include "../../engine/base/random.h"
 #include "../../engine/frame/settings.h"
+#include "../../engine/world/components.h"
+#include <stdio.h>
 #include <string.h>
 
 TEST(frame_settings, defaults_are_in_range_and_complete) {
@@ -138,6 +140,125 @@ TEST(frame_settings, lists_of_settings) {
     }
 }
 
+// ---- global illumination ----
+
+static const SettingDesc *find(const char *name) {
+    for (u32 i = 0; i < render_setting_count; i++)
+        if (strcmp(render_setting_descs[i].name, name) == 0) return &render_setting_descs[i];
+    fail_msg("no setting %s", name);
+    return NULL;
+}
+
+// The range in GI_PARAMS is the column's.
+static void check_range(const char *name, f64 low, f64 high) {
+    for (u32 i = 0; i < gi_component.column_count; i++) {
+        const ColumnDesc *column = &gi_component.columns[i];
+        if (strcmp(column->name, name) != 0) continue;
+        assert_true(column->min == low && column->max == high);
+        return;
+    }
+    fail_msg("no column %s", name);
+}
+
+// Settings "gi.NAME" and the component's columns: the same names, words and ranges.
+TEST(frame_settings, gi_settings_are_the_components_columns) {
+    u32 shared = 0;
+    for (u32 i = 0; i < gi_component.column_count; i++) {
+        const ColumnDesc *column = &gi_component.columns[i];
+        if (strncmp(column->key, "size", 4) == 0 || strncmp(column->key, "center", 6) == 0)
+            continue; // the box is the level's alone
+        char name[64], words[128];
+        snprintf(name, sizeof name, "gi.%s", column->name);
+        const SettingDesc *setting = find(name);
+        assert_string_equal(column->key, column->name);
+        assert_int_equal(setting->group, SETTING_GROUP_GI);
+        shared++;
+        switch (column->type) {
+        case COLUMN_BOOL:
+            assert_string_equal(setting->words, "level off on");
+            assert_true(setting->max == 2);
+            break;
+        case COLUMN_ENUM:
+            snprintf(words, sizeof words, "level %s", column->unit);
+            assert_string_equal(setting->words, words);
+            assert_true(setting->max == column->max + 1);
+            break;
+        case COLUMN_U32:
+            assert_true(setting->type == SETTING_U32 && setting->min == 0);
+            assert_true(setting->max == column->max && column->min >= 1);
+            break;
+        default:
+            assert_true(column->type == COLUMN_F32 && setting->type == SETTING_F32);
+            assert_true(setting->min == -1 && setting->max == column->max && column->min >= 0);
+        }
+    }
+    assert_int_equal(shared * 4, sizeof(GiParams));
+#define B(name)               assert_int_equal(find("gi." #name)->max, 2);
+#define E(name, words, count) assert_int_equal(find("gi." #name)->max, count);
+#define U(name, low, high)    check_range(#name, low, high);
+#define F(name, low, high)    check_range(#name, low, high);
+    GI_PARAMS(B, E, U, F)
+#undef B
+#undef E
+#undef U
+#undef F
+}
+
+TEST(frame_settings, gi_texts) {
+    RenderSettings s = settings_default(), before = s;
+    assert_true(settings_set_list(&s, "gi.enabled=on,gi.grid=256,gi.strength=2.5,gi.bounces=1"));
+    assert_true(s.gi_enabled == 2 && s.gi_grid == 4 && s.gi_strength == 2.5f && s.gi_bounces == 1);
+    char text[64];
+    assert_string_equal(setting_text(&s, find("gi.grid"), text, sizeof text), "256");
+    assert_string_equal(setting_text(&s, find("gi.enabled"), text, sizeof text), "on");
+    assert_string_equal(setting_text(&s, find("gi.diffuse"), text, sizeof text), "level");
+    // What is printed can be read.
+    for (u32 i = 0; i < render_setting_count; i++) {
+        char line[128];
+        snprintf(line, sizeof line, "%s=%s", render_setting_descs[i].name,
+                 setting_text(&s, &render_setting_descs[i], text, sizeof text));
+        assert_true(settings_set(&before, line));
+    }
+    assert_memory_equal(&before, &s, sizeof s);
+    static const char *const mistakes[][2] = {
+        {"gi.gird=64", "'gi.grid'"},       {"gi.grid=63", "'64'"},
+        {"gi.diffuse=conse", "'cones'"},    {"gi.bounces=3", "0 to 2"},
+        {"gi.step_factor=9", "-1 to 2.5"}, {"gi.show=radience", "'radiance'"}};
+    log_set_sink(keep_text, NULL);
+    for (u32 i = 0; i < COUNT_OF(mistakes); i++) {
+        assert_false(settings_set(&s, mistakes[i][0]));
+        if (!strstr(last_text, mistakes[i][1]))
+            fail_msg("'%s' gave: %s", mistakes[i][0], last_text);
+    }
+    log_set_sink(NULL, NULL);
+}
+
+// A preset replaces another whole, whatever came before.
+TEST(frame_settings, presets) {
+    RenderSettings s = settings_default();
+    assert_true(settings_set_preset(&s, "thesis"));
+    assert_true(s.gi_grid == 2 && s.gi_faces == 1 + GI_FACES_SHARED && s.gi_step_factor == 0.5f);
+    assert_true(s.gi_resolution == 1 + GI_RESOLUTION_FULL && s.gi_diffuse_aperture == 60);
+    assert_int_equal(s.gi_enabled, 0); // the level's
+    static const char *const wanted[] = {"lavapipe", "balanced", "high", "thesis"};
+    for (u32 i = 0; i < COUNT_OF(wanted); i++) {
+        RenderSettings alone = settings_default(), after = settings_default();
+        assert_true(settings_set_preset(&alone, wanted[i]));
+        for (u32 k = 0; k < setting_preset_count; k++)
+            assert_true(settings_set_preset(&after, setting_presets[k].name));
+        assert_true(settings_set_preset(&after, wanted[i]));
+        if (memcmp(&alone, &after, sizeof alone) != 0) fail_msg("'%s' names less", wanted[i]);
+    }
+    RenderSettings before = s;
+    log_set_sink(keep_text, NULL);
+    assert_false(settings_set_preset(&s, "thesys"));
+    assert_non_null(strstr(last_text, "'thesis'"));
+    assert_false(settings_set_preset(&s, "qwertyuiop"));
+    assert_non_null(strstr(last_text, "balanced"));
+    assert_memory_equal(&s, &before, sizeof s);
+    log_set_sink(NULL, NULL);
+}
+
 static bool has_effect(const RenderSettings *settings, const char *name) {
     for (u32 i = 0; i < render_setting_count; i++)
         if (strcmp(render_setting_descs[i].name, name) == 0)
@@ -158,6 +279,15 @@ TEST(frame_settings, effect_depends_on_the_path) {
     assert_true(settings_set_list(&s, "clustered_forward,clusters=gpu"));
     assert_true(has_effect(&s, "cluster_normals") && has_effect(&s, "tile_px"));
     assert_false(has_effect(&s, "grid"));
+    // Without a word from the settings the level may have GI.
+    assert_true(has_effect(&s, "gi.grid") && has_effect(&s, "gi.share"));
+    assert_false(has_effect(&s, "gi.show"));
+    assert_true(settings_set_list(&s, "gi.enabled=on,view=gi_voxels,gi.diffuse=cones"));
+    assert_true(has_effect(&s, "gi.show") && has_effect(&s, "gi.bounces"));
+    assert_false(has_effect(&s, "gi.share"));
+    assert_true(settings_set(&s, "gi.enabled=off"));
+    assert_true(has_effect(&s, "gi.enabled"));
+    assert_false(has_effect(&s, "gi.show") || has_effect(&s, "gi.bounces"));
     for (u32 i = 0; i < render_setting_count; i++)
         assert_in_range(render_setting_descs[i].group, 0, SETTING_GROUP_COUNT - 1);
 }
