@@ -87,7 +87,6 @@ void main() {
         light = GiPixel(texelFetch(trace_0, pixel, 0), texelFetch(trace_1, pixel, 0));
     else
         light = upsample(pixel, g, s);
-    if (GI_DIFFUSE == 2u) light.diffuse.rgb = vec3(0.0);
     vec3 indirect = g.albedo * light.diffuse.rgb;
     if (gi_has_specular()) indirect += gi_specular_color(s) * light.specular.rgb;
     indirect *= gi.strength.x * gbuffer_receives(g);

@@ -6,6 +6,7 @@
 #include "gbuffer.glsl"
 #include "gi.glsl"
 #include "gi_cones.glsl"
+#include "gi_probe_lookup.glsl"
 
 layout(set = 2, binding = BINDING_GI_IRRADIANCE) uniform sampler3D gi_irradiance;
 
@@ -62,7 +63,12 @@ GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, bool is_on) {
     vec3 zenith = frame.sky_zenith.rgb * gi.scale.y, horizon = frame.sky_horizon.rgb * gi.scale.y;
     vec3 start = gi_start(g);
     float first = gi_first(pixel);
-    if (GI_DIFFUSE == 1u || (GI_FEATURES & GI_FEATURE_AO) != 0u) {
+    if (GI_DIFFUSE == 2u) {
+        GiProbeLight probes = gi_probe_light(g.position, g.normal, is_on ? 8u : 0u);
+        result.diffuse.rgb = probes.light;
+        if ((GI_FEATURES & GI_FEATURE_AO) != 0u)
+            result.diffuse.a = mix(gi.strength.z, 1.0, probes.open);
+    } else if (GI_DIFFUSE == 1u || (GI_FEATURES & GI_FEATURE_AO) != 0u) {
         GiHemisphere sum =
             gi_hemisphere(start, g.normal, first, gi_reach(), is_on ? 6u : 0u, zenith, horizon);
         if (GI_DIFFUSE == 1u) result.diffuse.rgb = sum.light;

@@ -11,5 +11,4 @@ STUB(gi_dynamic);
 STUB(gi_light);
 STUB(gi_bounce);
 STUB(gi_irradiance);
-STUB(gi_probes);
 STUB(gi_view);

@@ -39,6 +39,20 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
     (SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_ATTENUATION) | SPEC_BIT(SPEC_EXACT_POWER) |          \
      SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_BIT(SPEC_LIGHT_BRANCH) | SPEC_READ_GBUFFER)
 
+// What a pass needs that makes voxels of triangles.
+#define SPEC_VOXELISE                                                                              \
+    (SPEC_BIT(SPEC_GI_STEP) | SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES))
+// What a pass needs that writes or reads filtered light.
+#define SPEC_GI_IMAGES                                                                             \
+    (SPEC_BIT(SPEC_GI_DIRECTIONS) | SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
+     SPEC_BIT(SPEC_GI_NEAREST_MIPS) | SPEC_BIT(SPEC_GI_CASCADES))
+// What a pass over the screen needs that gathers from the voxels.
+#define SPEC_READ_VOXELS                                                                           \
+    (SPEC_READ_GBUFFER | SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_GI_DIRECTIONS) |                 \
+     SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_NEAREST_MIPS) | SPEC_BIT(SPEC_GI_CASCADES) |       \
+     SPEC_BIT(SPEC_GI_DIFFUSE) | SPEC_BIT(SPEC_GI_FEATURES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
+     SPEC_BIT(SPEC_GI_RESOLUTION))
+
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
     RenderResource targets[2];
@@ -364,6 +378,89 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                           .cull = GPU_CULL_NONE,
                           .blend = GPU_BLEND_ALPHA,
                           .vertex_layout = GPU_VERTEX_UI},
+    [PIPELINE_GI_VOXELISE_RASTER] = {.label = "voxelise by drawing",
+                                     .vertex = "gi_vox.vert",
+                                     .fragment = "gi_vox.frag",
+                                     .cull = GPU_CULL_NONE,
+                                     .spec_mask = SPEC_VOXELISE},
+    [PIPELINE_GI_VOXELISE_COMPUTE] = {.label = "voxelise by compute",
+                                      .compute = "gi_vox.comp",
+                                      .spec_mask = SPEC_VOXELISE},
+    [PIPELINE_GI_SOLID] = {.label = "voxel insides",
+                           .compute = "gi_solid.comp",
+                           .spec_mask = SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_RANK] = {.label = "voxel ranks",
+                          .compute = "gi_rank.comp",
+                          .spec_mask = SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_LIST] = {.label = "voxel list", .compute = "gi_list.comp"},
+    [PIPELINE_GI_RESOLVE] = {.label = "voxel resolve", .compute = "gi_resolve.comp"},
+    [PIPELINE_GI_CLEAR] = {.label = "voxel clear",
+                           .compute = "gi_clear.comp",
+                           .spec_mask = SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_FILTER_BASE] = {.label = "voxel filter base",
+                                 .compute = "gi_filter_base.comp",
+                                 .compute_byte = "gi_filter_base_byte.comp",
+                                 .spec_mask = SPEC_GI_IMAGES | SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_FILTER_MIP] = {.label = "voxel filter mip",
+                                .compute = "gi_filter_mip.comp",
+                                .compute_byte = "gi_filter_mip_byte.comp",
+                                .spec_mask = SPEC_GI_IMAGES},
+    [PIPELINE_GI_PROBES] = {.label = "probes",
+                            .compute = "gi_probes.comp",
+                            .spec_mask = SPEC_GI_IMAGES},
+    [PIPELINE_GI_LIGHT] = {.label = "voxel light",
+                           .compute = "gi_light.comp",
+                           .compute_byte = "gi_light_byte.comp",
+                           .spec_mask = SPEC_GI_IMAGES | SPEC_BIT(SPEC_ATTENUATION) |
+                                        SPEC_BIT(SPEC_SHADOW) | SPEC_BIT(SPEC_DIRECTIONALS) |
+                                        SPEC_BIT(SPEC_GI_COSINE) | SPEC_BIT(SPEC_GI_VISIBILITY) |
+                                        SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_BOUNCE] = {.label = "voxel bounce",
+                            .compute = "gi_bounce.comp",
+                            .spec_mask = SPEC_GI_IMAGES | SPEC_BIT(SPEC_GI_STEP)},
+    [PIPELINE_GI_IRRADIANCE] = {.label = "voxel irradiance",
+                                .compute = "gi_irradiance.comp",
+                                .spec_mask = SPEC_GI_IMAGES},
+    [PIPELINE_GI_TRACED_LIGHTS] = {.label = "gi traced lights",
+                                   .vertex = "fullscreen.vert",
+                                   .fragment = "gi_traced_lights.frag",
+                                   .targets = {RESOURCE_HDR},
+                                   .target_count = 1,
+                                   .may_be_ms = true,
+                                   .cull = GPU_CULL_NONE,
+                                   .blend = GPU_BLEND_ADD,
+                                   .spec_mask = SPEC_ONE_LIGHT | SPEC_READ_VOXELS |
+                                                SPEC_BIT(SPEC_GI_TRACED)},
+    [PIPELINE_GI_TRACE] = {.label = "gi trace",
+                           .compute = "gi_trace.comp",
+                           .spec_mask = SPEC_READ_VOXELS},
+    [PIPELINE_GI_COMPOSE] = {.label = "gi compose",
+                             .vertex = "fullscreen.vert",
+                             .fragment = "gi_compose.frag",
+                             .targets = {RESOURCE_HDR},
+                             .target_count = 1,
+                             .may_be_ms = true,
+                             .cull = GPU_CULL_NONE,
+                             .blend = GPU_BLEND_SCALE_ADD,
+                             .spec_mask = SPEC_READ_VOXELS | SPEC_BIT(SPEC_SAMPLES)},
+    [PIPELINE_GI_VIEW_VOXELS] = {.label = "gi view voxels",
+                                 .vertex = "fullscreen.vert",
+                                 .fragment = "gi_view_voxels.frag",
+                                 .targets = {RESOURCE_LDR},
+                                 .target_count = 1,
+                                 .cull = GPU_CULL_NONE,
+                                 .spec_mask = SPEC_GI_IMAGES | SPEC_BIT(SPEC_GI_STEP) |
+                                              SPEC_BIT(SPEC_GI_VISIBILITY)},
+    [PIPELINE_GI_VIEW_PROBES] = {.label = "gi view probes",
+                                 .vertex = "fullscreen.vert",
+                                 .fragment = "gi_view_probes.frag",
+                                 .targets = {RESOURCE_LDR},
+                                 .target_count = 1,
+                                 .cull = GPU_CULL_NONE,
+                                 .spec_mask = SPEC_READ_VOXELS},
+                                .target_count = 1,
+                                .cull = GPU_CULL_NONE,
+                                .spec_mask = SPEC_READ_VOXELS | SPEC_BIT(SPEC_DEBUG_VIEW)},
 };
 
 static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
@@ -437,14 +534,14 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
     u32 spec[SPEC_COUNT] = {
         [SPEC_BRDF_MASK] = packet->brdf_mask,
         [SPEC_ATTENUATION] = packet->attenuation,
-        [SPEC_SHADOW] = packet->shadow_size_px > 0,
+        [SPEC_SHADOW] = packet_screen_shadow(packet),
         [SPEC_ALPHA_MASK] = variant.alpha_mask,
         [SPEC_TEXTURES] = variant.textures,
         [SPEC_EXACT_POWER] = settings->specular == SPECULAR_EXACT,
         [SPEC_SPOTS] = packet->spots.count > 0,
         [SPEC_DEBUG_VIEW] = settings->view,
         [SPEC_SUBGROUP_CULL] = settings->subgroup_cull,
-        [SPEC_LAYOUT] = settings->layout,
+        [SPEC_LAYOUT] = layout_of(packet),
         [SPEC_TILE_SHIFT] = 3 + settings->tile_px,
         [SPEC_CLUSTERED] = !settings_clustered(settings)        ? 0
                            : settings->clusters == CLUSTERS_CPU ? 1
@@ -465,7 +562,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_VERTEX_LIGHTING] = variant.vertex_lit,
         [SPEC_PIXELS_PER_LANE] = pixels_per_lane,
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
-        [SPEC_DIRECTIONALS] = packet->directionals.count,
+        [SPEC_DIRECTIONALS] = packet->frame.counts[2],
         [SPEC_LIGHT_BLOCKS] = packet_fits_light_blocks(packet),
         [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
         [SPEC_GI_FACES] = gi->faces,
@@ -485,6 +582,10 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         // Blended surfaces lie before those that the device made its lists for.
         spec[SPEC_DEVICE_LISTS] = 0;
         spec[SPEC_CLUSTERED] = MIN(spec[SPEC_CLUSTERED], 1);
+    }
+    if (kind >= PIPELINE_FIRST_GI_BUILD && kind < PIPELINE_FIRST_GI_SCREEN) {
+        spec[SPEC_DIRECTIONALS] = packet->directionals.count; // also those that the screen traces
+        spec[SPEC_SHADOW] = packet->shadow_size_px > 0;
     }
     for (u32 i = 0; i < SPEC_COUNT; i++)
         key.spec[i] = rows[kind].spec_mask & SPEC_BIT(i) ? spec[i] : 0;

@@ -109,6 +109,7 @@ typedef struct RendererStats {
     u32 list_indices, list_fallbacks, list_longest, clusters;
     // GI: how often each was done since the renderer was made; bytes on the device.
     u32 gi_static_voxelised, gi_dynamic_voxelised, gi_relit, gi_probes_traced;
+    u32 gi_probes_refreshed; // probes traced by this frame
     u32 gi_voxels, gi_dynamic_voxels, gi_lost_voxels; // of the newest finished frame that counted
     u64 gi_bytes;
 } RendererStats;

@@ -1,0 +1,95 @@
+#version 460
+// gi_probes.comp: light that arrives at the probes of a grid over the box, one probe an invocation.
+//
+// A probe keeps an ambient cube (Mitchell, McTaggart and Green 2006, "Shading in Valve's Source
+// engine"): for each of six directions the light that a surface facing it gets. Twelve cones through
+// the voxels, towards the corners of an icosahedron, are shared by all six: each counts with the mean
+// cosine over its own width. Besides a probe knows how far it is to the nearest occupied voxel along
+// each axis: who looks it up leaves out probes behind walls, and those that stand in one (0 all
+// around).
+//
+// Texel of block d (x = d * probes + x): rgb light for a surface that faces d, radiance; a: a code of
+// 15 bits (gi_probe_code): d's axis' two distances and how open the probe is towards d.
+#extension GL_GOOGLE_include_directive : require
+#define GI_BUILD
+#include "gi.glsl"
+#include "gi_cones.glsl"
+#include "gi_probe_code.glsl"
+layout(local_size_x = 64) in;
+
+layout(std140, set = 0, binding = BUILD_FRAME) uniform FrameBuffer { FrameRecord frame; };
+layout(set = 0, binding = BUILD_PROBES, rgba16f) writeonly uniform image3D probes;
+// Probes first, first + stride, ... (count of them) are traced.
+layout(push_constant) uniform Push { uint first, stride, count; };
+
+// Corners of an icosahedron: two of 0, +-A, +-B a coordinate plane.
+const float A = 0.525731112, B = 0.850650808;
+const vec3 CORNERS[12] =
+    vec3[](vec3(0, A, B), vec3(0, A, -B), vec3(0, -A, B), vec3(0, -A, -B), vec3(A, B, 0),
+           vec3(A, -B, 0), vec3(-A, B, 0), vec3(-A, -B, 0), vec3(B, 0, A), vec3(-B, 0, A),
+           vec3(B, 0, -A), vec3(-B, 0, -A));
+
+// Mean of max(cosine, 0) over a cone of 60 degrees whose axis has one of the three cosines that
+// occur, over their sum: 0.933 times the cosine, and 0.108 of a cone that is half behind.
+float cosine_share(float cosine) {
+    float share = cosine > 0.7 ? 0.793675 : cosine > 0.3 ? 0.490517 : 0.108253;
+    return cosine < -0.3 ? 0.0 : share * (1.0 / 3.001396);
+}
+
+// Voxels of a cascade from a place to the first occupied one along an axis, not counting its own;
+// 0: its own is occupied.
+const int STEPS_CAP = 64;
+float free_way(uint cascade, vec3 place, uint axis, int sign, int steps) {
+    ivec3 at = ivec3(floor(place)), stride = ivec3(0), dims = ivec3(gi.dims.xyz);
+    stride[axis] = sign;
+    int i = 0;
+    for (; i < steps; i++) {
+        bool is_inside = all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, dims));
+        ivec3 held = clamp(at, ivec3(0), dims - 1);
+        bool is_met = gi_occupied(gi_bit(uvec3(held) + uvec3(0u, 0u, gi.dims.z * cascade)));
+        if (is_inside && is_met) break;
+        at += stride;
+    }
+    float within = fract(place[axis]);
+    float way = float(i) - (sign > 0 ? within : 1.0 - within);
+    return i == 0 ? 0.0 : i == steps ? 1e9 : way;
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= count) return;
+    uint index = first + stride * gl_GlobalInvocationID.x;
+    uvec3 size = gi.probes.xyz;
+    uvec3 at = uvec3(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+    float spacing = gi.probe_origin.w;
+    vec3 world = gi.probe_origin.xyz + vec3(at) * spacing;
+
+    vec3 light[6] = vec3[](vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0));
+    float open[6] = float[](0, 0, 0, 0, 0, 0);
+    float reach = gi_reach(), tan_half = gi_flow.cone.x;
+    for (uint i = 0u; i < 12u; i++) {
+        vec3 direction = CORNERS[i];
+        GiCone cone = gi_cone(world, direction, tan_half, GI_START, reach);
+        vec3 arrives = cone.light.rgb + GI_SKY(frame, direction) * max(1.0 - cone.light.a, 0.0);
+        for (uint d = 0u; d < 6u; d++) {
+            float share = cosine_share((d & 1u) == 0u ? direction[d >> 1] : -direction[d >> 1]);
+            light[d] += arrives * share;
+            open[d] += (1.0 - cone.occlusion) * share;
+        }
+    }
+
+    uint cascade = min(gi_cascade(world, 0.0), GI_CASCADES - 1u);
+    float voxel = gi.origin[cascade].w;
+    vec3 place = gi_to_voxels(world, cascade);
+    // As far as a code reaches.
+    float across = gi_flow.probe_origin.w / gi_flow.origin[cascade].w;
+    int steps = min(int(GI_PROBE_REACH * across) + 2, STEPS_CAP);
+    for (uint axis = 0u; axis < 3u; axis++) {
+        float up = free_way(cascade, place, axis, 1, steps) * voxel / spacing;
+        float down = free_way(cascade, place, axis, -1, steps) * voxel / spacing;
+        for (uint side = 0u; side < 2u; side++) {
+            uint d = axis * 2u + side;
+            imageStore(probes, ivec3(uvec3(at.x + d * size.x, at.yz)),
+                       vec4(min(light[d], vec3(65000.0)), gi_probe_code(up, down, open[d])));
+        }
+    }
+}
