@@ -173,6 +173,33 @@ static int info_recording(const char *path, Facts *facts, Arena *arena) {
     return TOOL_OK;
 }
 
+// What the light manager did.
+static void info_frame_lights(Facts *facts, const PacketCounts *counts) {
+    fact_u64(facts, "lights_total", counts->lights_total);
+    fact_u64(facts, "lights_visible", counts->lights_visible);
+    fact_u64(facts, "lights_occluded", counts->lights_occluded);
+    fact_u64(facts, "lights_merged", counts->lights_merged);
+    fact_u64(facts, "merged_pairs", counts->lights_merged_pairs);
+    fact_u64(facts, "lights_dropped", counts->lights_dropped);
+    fact_u64(facts, "over_budget", counts->lights_over_budget);
+    fact_u64(facts, "lights_fading", counts->lights_fading);
+    fact_u64(facts, "lights_shaded", counts->lights_shaded);
+}
+
+static void info_frame_gi(Facts *facts, const Packet *packet) {
+    const GiRecord *record = &packet->gi.record;
+    char text[96];
+    snprintf(text, sizeof text, "%ux%ux%u, %u nested, %.3g m", record->dims[0], record->dims[1],
+             record->dims[2], record->dims[3], (f64)record->origin[0][3]);
+    fact_text(facts, "voxels", text);
+    fact_u64(facts, "voxel_instances", packet->gi_instances.count);
+    fact_u64(facts, "voxel_lights", packet->gi_lights.count);
+    fact_u64(facts, "traced_lights", packet->traced_lights.count);
+    fact_hash(facts, "static_key", packet->gi.static_key);
+    fact_hash(facts, "dynamic_key", packet->gi.dynamic_key);
+    fact_hash(facts, "light_key", packet->gi.light_key);
+}
+
 static int info_frame(const char *path, Facts *facts, Arena *arena) {
     AssetStore store;
     const Packet *packet;
@@ -189,6 +216,8 @@ static int info_frame(const char *path, Facts *facts, Arena *arena) {
     fact_u64(facts, "lights", packet->lights.count ? packet->lights.count - 1 : 0);
     fact_u64(facts, "directionals", packet->directionals.count);
     fact_u64(facts, "triangles", packet->counts.triangles);
+    info_frame_lights(facts, &packet->counts);
+    if (packet->gi.params.enabled) info_frame_gi(facts, packet);
     info_assets(facts, &store);
     asset_store_destroy(&store);
     return TOOL_OK;

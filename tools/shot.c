@@ -33,6 +33,7 @@ typedef struct Shot {
     SessionView view;
     FrameTimes times;
     PacketCounts counts;
+    PacketGi gi;
     u64 image_hash;
     Split split;
 } Shot;
@@ -129,6 +130,11 @@ static const Packet *next_packet(Shot *shot) {
     return session_packet(&shot->session, &shot->view);
 }
 
+static void keep_counts(Shot *shot, const Packet *packet) {
+    shot->counts = packet->counts;
+    shot->gi = packet->gi;
+}
+
 // Frames as a player's machine would make them: packet and drawing, without reading back.
 static bool time_frames(Shot *shot) {
     u32 count = WARM_UP_FRAMES + shot->options.frame_count;
@@ -158,7 +164,7 @@ static int draw_one(Shot *shot) {
     if ((options->stats || shot->common.json) && !time_frames(shot)) return TOOL_ENVIRONMENT;
     shot->view.cold = true; // those that were timed were not: a player's are not either
     packet = next_packet(shot);
-    shot->counts = packet->counts;
+    keep_counts(shot, packet);
     RenderImage image;
     if (!renderer_render_image(shot->headless.renderer, packet, &shot->session.frame, &image))
         return TOOL_ENVIRONMENT;
@@ -181,7 +187,7 @@ static int draw_split(Shot *shot) {
         return TOOL_USAGE;
     if (!split_draw(split, shot->headless.renderer, a, b, &shot->session.frame))
         return TOOL_ENVIRONMENT;
-    shot->counts = a->counts;
+    keep_counts(shot, a);
     shot->image_hash = split->image.hash;
     if (shot->options.out && !write_image(shot, &split->image, shot->options.out))
         return TOOL_ENVIRONMENT;
@@ -210,7 +216,7 @@ static int draw_range(Shot *shot) {
             !write_image(shot, &image, name))
             result = TOOL_ENVIRONMENT;
         shot->image_hash = image.hash;
-        shot->counts = packet->counts;
+        keep_counts(shot, packet);
         progress_set(&progress, tick - range[0] + 1, name);
     }
     progress_end(&progress);
@@ -229,6 +235,52 @@ static void json_memory(Json *json, const Gpu *gpu) {
     json_close(json);
 }
 
+// What each stage of the light manager took away.
+static void json_manager(Json *json, const PacketCounts *counts) {
+    json_open_flat_object(json, "light_manager");
+    json_u64(json, "occluded", counts->lights_occluded);
+    json_u64(json, "merged", counts->lights_merged);
+    json_u64(json, "merged_pairs", counts->lights_merged_pairs);
+    json_f64(json, "merge_error", (f64)counts->merge_error);
+    json_u64(json, "dropped", counts->lights_dropped);
+    json_u64(json, "over_budget", counts->lights_over_budget);
+    json_u64(json, "fading", counts->lights_fading);
+    json_u64(json, "near", counts->lights_near);
+    json_u64(json, "between", counts->lights_between);
+    json_u64(json, "far", counts->lights_far);
+    json_u64(json, "occluders", counts->occluders);
+    json_u64(json, "drawables_occluded", counts->drawables_occluded);
+    json_close(json);
+}
+
+static void json_gi(Json *json, const PacketCounts *counts, const PacketGi *gi,
+                    const RendererStats *stats) {
+    const u32 *dims = gi->record.dims;
+    json_open_object(json, "gi");
+    json_open_flat_array(json, "grid");
+    for (u32 a = 0; a < 3; a++) json_u64(json, NULL, dims[a]);
+    json_close(json);
+    json_u64(json, "cascades", dims[3]);
+    json_f64(json, "voxel_m", (f64)gi->record.origin[0][3]);
+    json_u64(json, "instances", gi->record.counts[1]);
+    json_u64(json, "lights", counts->gi_lights);
+    json_u64(json, "light_indices", counts->gi_light_indices);
+    json_u64(json, "traced_lights", gi->record.counts[0]);
+    json_u64(json, "voxels", stats->gi_voxels);
+    json_u64(json, "dynamic_voxels", stats->gi_dynamic_voxels);
+    json_u64(json, "lost_voxels", stats->gi_lost_voxels);
+    json_u64(json, "static_voxelised", stats->gi_static_voxelised);
+    json_u64(json, "dynamic_voxelised", stats->gi_dynamic_voxelised);
+    json_u64(json, "relit", stats->gi_relit);
+    json_u64(json, "probes_traced", stats->gi_probes_traced);
+    json_u64(json, "probes_refreshed", stats->gi_probes_refreshed);
+    json_u64(json, "bytes", stats->gi_bytes);
+    json_hash(json, "static_key", gi->static_key);
+    json_hash(json, "dynamic_key", gi->dynamic_key);
+    json_hash(json, "light_key", gi->light_key);
+    json_close(json);
+}
+
 static void json_counts(Json *json, const Shot *shot) {
     const PacketCounts *counts = &shot->counts;
     RendererStats stats = renderer_stats(shot->headless.renderer);
@@ -237,6 +289,7 @@ static void json_counts(Json *json, const Shot *shot) {
     json_u64(json, "visible", counts->lights_visible);
     json_u64(json, "shaded", counts->lights_shaded);
     json_close(json);
+    json_manager(json, counts);
     json_open_flat_object(json, "drawables");
     json_u64(json, "total", counts->drawables_total);
     json_u64(json, "visible", counts->drawables_visible);
@@ -253,6 +306,7 @@ static void json_counts(Json *json, const Shot *shot) {
     json_u64(json, "longest", counts->cell_light_max);
     json_u64(json, "light_indices", counts->light_index_count);
     json_close(json);
+    if (shot->gi.params.enabled) json_gi(json, counts, &shot->gi, &stats);
 }
 
 static Json shot_stats(Shot *shot) {
@@ -287,6 +341,7 @@ static Json shot_stats(Shot *shot) {
     json_f64(&json, "lights", (f64)packet->lights_ms);
     json_f64(&json, "grid", (f64)packet->grid_ms);
     json_f64(&json, "pack", (f64)packet->pack_ms);
+    json_f64(&json, "gi", (f64)packet->gi_ms);
     json_close(&json);
     json_counts(&json, shot);
     json_memory(&json, shot->headless.gpu);

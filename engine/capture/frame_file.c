@@ -33,7 +33,9 @@
     X(blend_draws)                                                                                 \
     X(emissive_draws)                                                                              \
     X(shadow_draws)                                                                                \
-    X(shadow_mask_draws)
+    X(shadow_mask_draws)                                                                           \
+    X(gi_static_draws)                                                                             \
+    X(gi_dynamic_draws)
 
 // The frame file's structs are the engine's own: a change of them is a change of the version.
 _Static_assert(sizeof(MeshVertex) == 32, "MeshVertex is part of the format");

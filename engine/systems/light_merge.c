@@ -183,6 +183,10 @@ bool light_may_merge(const LightScene *scene, u32 a, u32 b, bool held, f32 *erro
     *error = 0.0f;
     if (light->kind[a] != light->kind[b] || light->kind[a] == LIGHT_DIRECTIONAL) return false;
     if (light_pinned(light, a) || light_pinned(light, b)) return false;
+    // A light that stands for two has no shadow from the voxels.
+    if (light->screen_shadow[a] != SCREEN_SHADOW_MAP ||
+        light->screen_shadow[b] != SCREEN_SHADOW_MAP)
+        return false;
     bool dark = scene->candidates.radius[a] < 0.0f || scene->candidates.radius[b] < 0.0f;
     if (dark && !held) return false; // one that goes out for a moment stays with its partner
     f32 range_a = light->reach[a], range_b = light->reach[b];

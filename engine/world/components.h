@@ -75,7 +75,7 @@ extern "C" {
     C(F32, priority, "", 1, "priority", 0, 100,                                                   \
       "weight under a light budget; 100 = pinned: never merged, dropped or faded")                \
     C(ENUM, voxel_shadow, "auto none shadow_map ray soft_ray", 0, "voxel_shadow", 0, 4,           \
-      "how voxels ask whether they see it (auto: its shadow map, else none)")                     \
+      "how voxels ask whether they see it (auto: its shadow map; ray if screen_shadow is cone or volume; else none)")                  \
     C(ENUM, screen_shadow, "map cone volume", 0, "screen_shadow", 0, 2,                           \
       "shadow on surfaces: its shadow map, a cone through the voxels, or what the voxels see")    \
     C(F32, shadow_aperture, "deg", 5, "shadow_aperture", 0.1, 90, "cone: full opening angle")     \

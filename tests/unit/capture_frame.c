@@ -5,8 +5,9 @@
 
 static const Packet *packet_of(Session *session) {
     session_frame_begin(session);
-    const Packet *packet = session_packet(
-        session, &(SessionView){.settings = settings_default(), .width_px = 80, .height_px = 45});
+    SessionView view = {.settings = settings_default(), .width_px = 80, .height_px = 45};
+    assert_true(settings_set(&view.settings, "gi.enabled=on")); // draws more than is seen
+    const Packet *packet = session_packet(session, &view);
     assert_non_null(packet);
     return packet;
 }
@@ -68,6 +69,9 @@ static void check_level(const char *level, u32 least_textures) {
     assert_draws_equal(packet, &session.assets, again, &store, packet->opaque_draws);
     assert_draws_equal(packet, &session.assets, again, &store, packet->mask_draws);
     assert_draws_equal(packet, &session.assets, again, &store, packet->shadow_draws);
+    assert_true(packet->gi_static_draws.count > 0);
+    assert_draws_equal(packet, &session.assets, again, &store, packet->gi_static_draws);
+    assert_draws_equal(packet, &session.assets, again, &store, packet->gi_dynamic_draws);
     const PacketMaterial *a = PACKET_DATA(packet, material_bindings, PacketMaterial);
     const PacketMaterial *b = PACKET_DATA(again, material_bindings, PacketMaterial);
     u32 textures = 0;
