@@ -10,6 +10,7 @@
 #include "overlay_build.h"
 #include <backends/imgui_impl_glfw.h>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <imgui.h>
 
@@ -198,8 +199,93 @@ static void panel_setting(RenderSettings *settings, const SettingDesc *desc) {
         ImGui::SetTooltip("%s%s", desc->help, has_effect ? "" : " (no effect with this path)");
 }
 
+// --- Settings that leave it to the level ---
+
+// The level's column that a setting "gi.NAME" overrules, and its value as text; NULL = it overrules
+// none. A level without the table has no global illumination: its values are the columns' own.
+static const ColumnDesc *level_column(const World *world, const SettingDesc *desc, char *value,
+                                      u64 value_cap) {
+    if (desc->group != SETTING_GROUP_GI || strncmp(desc->name, "gi.", 3) != 0 || !world)
+        return nullptr;
+    const Table *table = world->tables[COMPONENT_gi];
+    i32 index = table_find_column(table, desc->name + 3);
+    if (index < 0) return nullptr;
+    const ColumnDesc *column = &table->desc->columns[index];
+    u32 word = (u32)column->initial;
+    f32 number = (f32)column->initial;
+    if (table->count > 0) {
+        memcpy(&word, table_column(table, (u32)index), sizeof word);
+        memcpy(&number, table_column(table, (u32)index), sizeof number);
+    }
+    switch (column->type) {
+    case COLUMN_BOOL:
+        snprintf(value, value_cap, "%s", word ? "on" : "off");
+        if (strcmp(column->name, "enabled") == 0 && table->count == 0)
+            snprintf(value, value_cap, "off");
+        break;
+    case COLUMN_ENUM: // the setting's words are the column's, after "level"
+        settings_word(desc->name, word + 1, value, value_cap);
+        break;
+    case COLUMN_F32:
+        snprintf(value, value_cap, "%g", (f64)number);
+        break;
+    default:
+        snprintf(value, value_cap, "%u", word);
+    }
+    return column;
+}
+
+// A number: ticked = the setting's own, else the level's, which is shown.
+static void panel_overruling_number(RenderSettings *settings, const SettingDesc *desc,
+                                    const ColumnDesc *column, const char *level_value) {
+    u8 *field = (u8 *)settings + desc->offset;
+    bool is_float = desc->type == SETTING_F32;
+    f32 number = is_float ? *(f32 *)field : (f32) * (u32 *)field;
+    bool own = number > desc->initial;
+    ImGui::PushID(desc->name);
+    if (ImGui::Checkbox("##own", &own)) number = own ? (f32)atof(level_value) : (f32)desc->initial;
+    // A whole number's 0 means the level's; 0 metres are metres.
+    if (own && !is_float) number = MAX(number, 1.0f);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(104.0f);
+    if (own) {
+        f32 max = (f32)MIN(column->max, 1000.0), min = (f32)column->min;
+        ImGuiSliderFlags flags = max > 10.0f ? ImGuiSliderFlags_Logarithmic : 0;
+        ImGui::SliderFloat(desc->name, &number, min, max, is_float ? "%.2f" : "%.0f",
+                           flags | ImGuiSliderFlags_AlwaysClamp);
+    } else {
+        ImGui::TextDisabled("%s (level)  %s", level_value, desc->name);
+    }
+    ImGui::PopID();
+    if (is_float)
+        *(f32 *)field = number;
+    else
+        *(u32 *)field = (u32)number;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column->help);
+}
+
+static void panel_setting_or_level(const World *world, RenderSettings *settings,
+                                   const SettingDesc *desc) {
+    char value[48];
+    const ColumnDesc *column = level_column(world, desc, value, sizeof value);
+    if (!column) {
+        panel_setting(settings, desc);
+    } else if (desc->type == SETTING_F32 || desc->type == SETTING_U32) {
+        panel_overruling_number(settings, desc, column, value);
+    } else {
+        panel_setting(settings, desc);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column->help);
+        u32 word;
+        memcpy(&word, (u8 *)settings + desc->offset, sizeof word);
+        if (word == 0) {
+            ImGui::SameLine();
+            ImGui::TextDisabled("= %s", value);
+        }
+    }
+}
+
 // All settings, by group; the first group is open.
-static void panel_setting_groups(RenderSettings *settings, bool has_size) {
+static void panel_setting_groups(const World *world, RenderSettings *settings, bool has_size) {
     ImGui::PushItemWidth(130.0f);
     for (u32 group = 0; group < SETTING_GROUP_COUNT; group++) {
         if (!ImGui::TreeNodeEx(setting_group_titles[group],
@@ -209,7 +295,8 @@ static void panel_setting_groups(RenderSettings *settings, bool has_size) {
             const SettingDesc *desc = &render_setting_descs[i];
             bool is_size = desc->offset == offsetof(RenderSettings, scale) ||
                            desc->offset == offsetof(RenderSettings, target_ms);
-            if ((u32)desc->group == group && (has_size || !is_size)) panel_setting(settings, desc);
+            if ((u32)desc->group == group && (has_size || !is_size))
+                panel_setting_or_level(world, settings, desc);
         }
         ImGui::TreePop();
     }
@@ -220,7 +307,7 @@ static void panel_setting_groups(RenderSettings *settings, bool has_size) {
 static void panel_settings(App *app) {
     if (!ImGui::CollapsingHeader("settings", ImGuiTreeNodeFlags_DefaultOpen)) return;
     ImGui::PushID("settings");
-    panel_setting_groups(&app->settings, true);
+    panel_setting_groups(app->session.world, &app->settings, true);
     ImGui::PopID();
 }
 
@@ -248,7 +335,7 @@ static void panel_split(App *app) {
         app->other_settings = kept;
     }
     ImGui::TextUnformatted("settings of B:");
-    panel_setting_groups(&app->other_settings, false);
+    panel_setting_groups(app->session.world, &app->other_settings, false);
     ImGui::PopID();
 }
 
@@ -338,6 +425,44 @@ static void panel_manager(App *app) {
     ImGui::PopID();
 }
 
+// What each step of global illumination costs, and what there is of it.
+static void panel_gi(App *app) {
+    RendererStats stats = renderer_stats(app->renderer);
+    if (stats.gi_bytes == 0 || !ImGui::CollapsingHeader("global illumination")) return;
+    GpuTimer timers[GPU_TIMERS_CAP];
+    u32 count = gpu_timers(app->gpu, timers, GPU_TIMERS_CAP);
+    f32 sum = 0.0f;
+    for (u32 i = 0; i < count; i++) {
+        const char *name = timers[i].name;
+        if (strncmp(name, "voxel", 5) != 0 && strncmp(name, "gi ", 3) != 0 &&
+            strncmp(name, "probes", 6) != 0)
+            continue;
+        ImGui::Text("%6.2f ms %s", (f64)timers[i].ms, name);
+        sum += timers[i].ms;
+    }
+    ImGui::Text("%6.2f ms all", (f64)sum);
+    ImGui::Text("%6.1f MiB on the device", (f64)stats.gi_bytes / (1024.0 * 1024.0));
+    ImGui::Text("%6u voxels, %u of them dynamic", stats.gi_voxels, stats.gi_dynamic_voxels);
+    if (stats.gi_lost_voxels) ImGui::Text("%6u found no room", stats.gi_lost_voxels);
+    ImGui::Text("%6u lights, %u in their lists", app->counts.gi_lights,
+                app->counts.gi_light_indices);
+    ImGui::Text("voxelised %u times, dynamic ones %u", stats.gi_static_voxelised,
+                stats.gi_dynamic_voxelised);
+    ImGui::Text("lit %u times, probes traced %u", stats.gi_relit, stats.gi_probes_traced);
+    ImGui::TextUnformatted("presets:");
+    for (u32 i = 0; i < setting_preset_count; i++) {
+        if (i % 2) ImGui::SameLine();
+        if (ImGui::SmallButton(setting_presets[i].name))
+            settings_set_preset(&app->settings, setting_presets[i].name);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", setting_presets[i].help);
+    }
+    if (!can_edit(app)) return;
+    Table *table = app->session.world->tables[COMPONENT_gi];
+    if (table->count == 0 || !ImGui::TreeNode("the level's values")) return;
+    panel_row(table, 0);
+    ImGui::TreePop();
+}
+
 static void panel_post(App *app) {
     if (!can_edit(app)) return;
     Table *table = app->session.world->tables[COMPONENT_post];
@@ -387,6 +512,7 @@ static void draw_panel(App *app, u32 width_px) {
         panel_settings(app);
         panel_split(app);
         panel_manager(app);
+        panel_gi(app);
         panel_post(app);
     }
     ImGui::End();

@@ -295,6 +295,83 @@ static void show_cell_lights(Renderer *renderer, DebugDraw *draw) {
                    counts->cell_light_max);
 }
 
+// --- Global illumination ---
+
+// False: there is none in this packet, which is all that the picture tells.
+static bool gi_legend(Renderer *renderer, DebugDraw *draw, const char *caption, Legend *legend) {
+    bool is_on = renderer->gi.is_on;
+    *legend = legend_begin(renderer, draw, is_on ? caption : "global illumination is off");
+    return is_on;
+}
+
+static void show_gi_voxels(Renderer *renderer, DebugDraw *draw) {
+    const RenderSettings *settings = &draw->packet->settings;
+    const GiRecord *record = &draw->packet->gi.record;
+    char word[48], caption[96], direction[8];
+    settings_word("gi.show", settings->gi_show, word, sizeof word);
+    settings_word("gi.show_direction", settings->gi_show_direction, direction, sizeof direction);
+    bool is_filtered = settings->gi_show == GI_SHOW_RADIANCE && settings->gi_show_level > 0;
+    if (is_filtered)
+        snprintf(caption, sizeof caption, "filtered radiance, level %u, light towards %s",
+                 MIN(settings->gi_show_level, record->atlas[3]), direction);
+    else
+        snprintf(caption, sizeof caption, "voxels: %s", word);
+    Legend legend;
+    if (!gi_legend(renderer, draw, caption, &legend)) return;
+    if (settings->gi_show == GI_SHOW_STATIC) {
+        legend_row(&legend, RGB(89, 191, 89), "static");
+        legend_row(&legend, RGB(255, 153, 38), "dynamic");
+        if (draw->packet->gi.params.solid) legend_row(&legend, RGB(77, 115, 242), "solid");
+    }
+    RendererStats stats = renderer_stats(renderer);
+    if (stats.gi_lost_voxels)
+        legend_row(&legend, RGB(255, 0, 255), "%u found no room", stats.gi_lost_voxels);
+    legend_row(&legend, WHITE, "%u x %u x %u of %.3f m, %u cascade%s", record->dims[0],
+               record->dims[1], record->dims[2], (f64)record->origin[0][3], record->dims[3],
+               record->dims[3] > 1 ? "s" : "");
+    legend_row(&legend, WHITE, "%u occupied, %u of them dynamic", stats.gi_voxels,
+               stats.gi_dynamic_voxels);
+}
+
+static void show_gi_steps(Renderer *renderer, DebugDraw *draw) {
+    static const u32 steps[] = {16, 32, 64, 96, 128, 256}; // gi_view_trace.frag: red is 128
+    Legend legend;
+    if (!gi_legend(renderer, draw, "steps of a pixel's cones together", &legend)) return;
+    for (u32 i = 0; i < COUNT_OF(steps); i++)
+        legend_row(&legend, heat_color((f32)steps[i] / 128.0f), "%u", steps[i]);
+    legend_row(&legend, RGB(0, 0, 0), "no cones: probes, voxels or none");
+}
+
+static void show_gi_probes(Renderer *renderer, DebugDraw *draw) {
+    const GiRecord *record = &draw->packet->gi.record;
+    Legend legend;
+    if (!gi_legend(renderer, draw, "probes, each lit by what it says", &legend)) return;
+    if (draw->packet->gi.params.diffuse != GI_DIFFUSE_PROBES) {
+        legend_row(&legend, WHITE, "there are none: gi.diffuse is not probes");
+        return;
+    }
+    legend_row(&legend, RGB(184, 64, 64), "in a wall");
+    legend_row(&legend, WHITE, "%u x %u x %u, %.2f m apart", record->probes[0], record->probes[1],
+               record->probes[2], (f64)record->probe_origin[3]);
+}
+
+static void show_gi_leaks(Renderer *renderer, DebugDraw *draw) {
+    Legend legend;
+    if (!gi_legend(renderer, draw, "light that came through a surface", &legend)) return;
+    legend_row(&legend, RGB(255, 38, 153), "by cones, where rays bring less than 5 %% of it");
+}
+
+static void show_gi_part(Renderer *renderer, DebugDraw *draw) {
+    static const char *const captions[VIEW_COUNT] = {
+        [VIEW_GI_INDIRECT] = "indirect light",
+        [VIEW_GI_DIFFUSE] = "indirect diffuse light, without albedo",
+        [VIEW_GI_SPECULAR] = "indirect mirrored light",
+        [VIEW_GI_AO] = "ambient visibility: white is open",
+    };
+    Legend legend;
+    gi_legend(renderer, draw, captions[draw->packet->settings.view], &legend);
+}
+
 static const struct {
     const char *caption; // of views without a legend
     void (*show)(Renderer *renderer, DebugDraw *draw);
@@ -322,6 +399,14 @@ static const struct {
     [VIEW_LIGHT_LODS] = {NULL, show_lods},
     [VIEW_OCCLUDERS] = {NULL, show_occluders},
     [VIEW_LAYERS] = {NULL, show_overdraw},
+    [VIEW_GI_VOXELS] = {NULL, show_gi_voxels},
+    [VIEW_GI_INDIRECT] = {NULL, show_gi_part},
+    [VIEW_GI_DIFFUSE] = {NULL, show_gi_part},
+    [VIEW_GI_SPECULAR] = {NULL, show_gi_part},
+    [VIEW_GI_AO] = {NULL, show_gi_part},
+    [VIEW_GI_STEPS] = {NULL, show_gi_steps},
+    [VIEW_GI_PROBES] = {NULL, show_gi_probes},
+    [VIEW_GI_LEAKS] = {NULL, show_gi_leaks},
 };
 
 bool debug_view_upload(Renderer *renderer, const Packet *packet) {

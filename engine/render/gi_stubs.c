@@ -6,9 +6,3 @@ static bool never(const PassContext *c) {
     return false;
 }
 #define STUB(id) const Pass id##_pass = {.name = #id, .needed = never}
-STUB(gi_static);
-STUB(gi_dynamic);
-STUB(gi_light);
-STUB(gi_bounce);
-STUB(gi_irradiance);
-STUB(gi_view);
