@@ -130,14 +130,14 @@ typedef struct MeshVertex {
 // as on, on the software driver). ---
 #define SPEC_BRDF_MASK     0 // bit Brdf: specular lobes that the level uses; bit 4: Oren-Nayar; bit 5: Fresnel
 #define SPEC_ATTENUATION   1 // Attenuation
-#define SPEC_SHADOW        2 // 1: directional 0 has a shadow map
+#define SPEC_SHADOW        2 // 1: directional 0 has a shadow map (voxels: the one that says so)
 #define SPEC_ALPHA_MASK    3 // geometry: discard under the cutoff
 #define SPEC_SPOTS         4 // 1: there are spot lights (deferred_light: this draw is of spots)
 #define SPEC_DEBUG_VIEW    5 // DebugView of the debug pass
 #define SPEC_SUBGROUP_CULL 6 // tiled: per-subgroup culling of the tile's list
 #define SPEC_CELL_LISTS    7 // forward shading: 1 = lights of the pixel's tile, 0 = all lights
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
-#define SPEC_DIRECTIONALS  9 // how many directional lights
+#define SPEC_DIRECTIONALS  9 // how many directional lights: of the screen; voxels: all of them
 #define SPEC_LIGHT_BLOCKS  10 // 1 = the uniform blocks hold all lights, 0 = too many: use storage
 #define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades in turn (1..8)
 #define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
@@ -240,6 +240,9 @@ typedef struct MeshVertex {
 #define GI_FEATURE_SPECULAR 1
 #define GI_FEATURE_AO       2
 #define GI_FEATURE_DITHER   4
+// SPEC_GI_VISIBILITY, beside a bit for each VoxelShadow.
+#define GI_VISIBILITY_SOLID 16 // there is a layer of solid voxels, which rays meet
+#define GI_VISIBILITY_KEPT  32 // the mean over a voxel's lights is wanted
 // Layers of the masks; each has a bit for every voxel of all cascades (they lie one after another
 // along z): bit x + dims.x * (y + dims.y * (z + dims.z * cascade)).
 #define GI_MASK_STATIC  0
@@ -267,6 +270,36 @@ typedef struct MeshVertex {
 #define GI_COUNTER_ALL_ARGS     4 // 3 words: dispatch over all slots
 #define GI_COUNTER_DYNAMIC_ARGS 8 // 3 words: over the dynamic ones
 #define GI_COUNTER_COUNT        16
+
+// Sums of what falls into a slot while voxels are made (BUILD_ACCUMULATORS), GI_SUM_WORDS a slot, for
+// GI_WINDOW_SLOTS slots at a time. All are zero between uses. A fragment adds whole numbers below
+// 2^sum_bits, which are as many as no number of triangles can make overflow (gi_voxelise.c).
+#define GI_WINDOW_SLOTS      262144
+#define GI_SUM_COUNT         0  // fragments
+#define GI_SUM_ALBEDO        1  // rgb
+#define GI_SUM_NORMAL        4  // xyz, 0..1 coded
+#define GI_SUM_FACES         7  // +x -x +y -y +z -z
+#define GI_SUM_EMISSION_LOW  13 // rgb: the low sum_bits bits
+#define GI_SUM_EMISSION_HIGH 16 // and the bits above
+#define GI_SUM_WORDS         19
+#define GI_RANK_BLOCK        2048 // words of the masks that a group counts
+// BUILD_COUNTERS goes on behind its counters: set bits of each block of words.
+#define GI_COUNTER_BLOCKS    GI_COUNTER_COUNT
+// GiDrawRecord.how.x
+#define GI_DRAW_DYNAMIC       1u  // layer
+#define GI_DRAW_CASCADE_SHIFT 1   // 2 bits
+#define GI_DRAW_SMALL         8u  // triangles of few columns are wanted
+#define GI_DRAW_LARGE         16u // those of many are
+#define GI_DRAW_TWO_SIDED     32u
+#define GI_DRAW_BITS_SHIFT    8   // sum_bits, 4 bits
+#define GI_LARGE_COLUMNS      64  // a triangle whose box covers more columns of voxels is large
+
+// Pushed to the passes that make voxels.
+SHARED_STRUCT(GiDrawRecord) {
+    uvec4 mesh; // first index, vertex offset, first instance, triangles
+    uvec4 how;  // GI_DRAW_*, first slot of the window in its layer, bits of the largest emission,
+                // instances
+} SHARED_END(GiDrawRecord)
 
 SHARED_STRUCT(GiRecord) {
     vec4 origin[GI_CASCADES_CAP]; // xyz lower corner, world; w voxel size, m. 0 is the finest
@@ -359,7 +392,8 @@ SHARED_STRUCT(SpotRecord) {
 } SHARED_END(SpotRecord)
 
 SHARED_STRUCT(DirectionalRecord) {
-    vec4 direction;  // xyz unit, towards the light
+    vec4 direction;  // xyz unit, towards the light; w for voxels: VoxelShadow as in GiLightRecord,
+                     // -1 = it does not light them
     vec4 color;      // rgb * intensity; w 1 = has the shadow map
 } SHARED_END(DirectionalRecord)
 

@@ -253,7 +253,6 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
         !lookups_update(renderer, packet))
         return false;
     if (!buffer_fill(renderer, FRAME_BUFFER_FRAME, &packet->frame, sizeof packet->frame, 0) ||
-        !buffer_fill(renderer, FRAME_BUFFER_GI, &packet->gi.record, sizeof packet->gi.record, 0) ||
         !light_blocks_fill(renderer, packet))
         return false;
 #define X(id, section, Type, min_count)                                                            \
@@ -263,6 +262,9 @@ bool frame_upload(Renderer *renderer, const Packet *packet) {
     FRAME_BUFFERS(X)
 #undef X
     gi_begin(renderer, packet);
+    GiRecord gi = packet->gi.record;
+    gi.counts[2] = renderer->gi.slot_cap;
+    if (!buffer_fill(renderer, FRAME_BUFFER_GI, &gi, sizeof gi, 0)) return false;
     return debug_view_upload(renderer, packet) && text_upload(renderer, packet) &&
            frame_group_update(renderer) && gi_update_groups(renderer);
 }

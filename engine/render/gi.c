@@ -204,11 +204,11 @@ u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams
     case RESOURCE_GI_ATTRIBUTES:
         return (u64)slots * GI_ATTRIBUTE_WORDS * word;
     case RESOURCE_GI_ACCUMULATORS:
-        return (u64)MIN(slots, 1u << 19) * 16 * word;
+        return gi_accumulator_bytes(voxels, slots, params->solid);
     case RESOURCE_GI_RADIANCE:
         return (u64)slots * (params->faces == GI_FACES_APART ? 6 : 1) * 2 * word;
     case RESOURCE_GI_COUNTERS:
-        return GI_COUNTER_COUNT * word;
+        return (GI_COUNTER_BLOCKS + gi_rank_blocks(voxels)) * word;
     default:
         return 0;
     }

@@ -99,7 +99,10 @@ static bool meshes_upload(Renderer *renderer, const AssetStore *assets) {
             gpu_upload_buffer(gpu, renderer->indices, index * sizeof(u32), mesh->indices,
                               (u64)mesh->total_index_count * sizeof(u32));
         GpuMesh *out = &renderer->meshes[i];
-        *out = (GpuMesh){.lod_count = mesh->lod_count, .vertex_offset = (i32)vertex};
+        *out = (GpuMesh){.lod_count = mesh->lod_count,
+                         .vertex_offset = (i32)vertex,
+                         .longest_edge = mesh_longest_edge(mesh),
+                         .is_closed = mesh_is_closed(mesh)};
         for (u32 lod = 0; lod < mesh->lod_count; lod++) {
             out->lods[lod] = mesh->lods[lod];
             out->lods[lod].first_index += (u32)index;

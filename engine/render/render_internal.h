@@ -234,6 +234,8 @@ typedef struct GpuMesh {
     MeshLod lods[MESH_LODS_CAP]; // first_index in the buffer of all meshes
     u32 lod_count;
     i32 vertex_offset;
+    f32 longest_edge; // of its triangles, mesh space
+    bool is_closed;   // and its triangles look outwards: it has an inside
 } GpuMesh;
 typedef struct MaterialGroup {
     u32 albedo, normal, emissive; // texture ids
@@ -442,6 +444,14 @@ bool gi_update_groups(Renderer *renderer); // after it
 bool gi_read_reports(Renderer *renderer, u32 slot);
 // Bytes of a buffer for so many voxels of all cascades and slots.
 u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams *params);
+// gi_voxelise.c: of the sums for a window of slots; groups that count the bits of a layer of the
+// masks; bits of each number that a triangle adds to a sum of 32, if there are so many triangles.
+u64 gi_accumulator_bytes(u64 voxels, u32 slots, bool solid);
+u32 gi_rank_blocks(u64 voxels);
+u32 gi_sum_bits(u64 triangles);
+// gi_meshes.c: see GpuMesh.
+f32 mesh_longest_edge(const Mesh *mesh);
+bool mesh_is_closed(const Mesh *mesh);
 // Does this packet have GI, and did gi_begin find room for it?
 bool gi_is_on(const PassContext *c);
 // Binds a pipeline that makes voxels with its groups; level: of the atlas, for the filter.

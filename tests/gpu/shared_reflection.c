@@ -32,7 +32,17 @@
     X(DirectionalRecord, M(DirectionalRecord, direction) M(DirectionalRecord, color))              \
     X(CellRecord, M(CellRecord, list))                                                             \
     X(TileDepthRecord, M(TileDepthRecord, range) M(TileDepthRecord, mask))                         \
-    X(GridNode, M(GridNode, low) M(GridNode, high))
+    X(GridNode, M(GridNode, low) M(GridNode, high))                                                \
+    X(GiRecord,                                                                                    \
+      M(GiRecord, origin) M(GiRecord, dims) M(GiRecord, atlas) M(GiRecord, strength)               \
+          M(GiRecord, cone) M(GiRecord, specular) M(GiRecord, scale) M(GiRecord, light_grid)       \
+              M(GiRecord, light_grid_origin) M(GiRecord, light_grid_rate) M(GiRecord, probes)      \
+                  M(GiRecord, probe_origin) M(GiRecord, trace) M(GiRecord, counts)                 \
+                      M(GiRecord, show))                                                           \
+    X(GiLightRecord, M(GiLightRecord, position) M(GiLightRecord, color)                            \
+                         M(GiLightRecord, direction) M(GiLightRecord, extra))                      \
+    X(TracedLightRecord, M(TracedLightRecord, light) M(TracedLightRecord, shadow))                 \
+    X(GiDrawRecord, M(GiDrawRecord, mesh) M(GiDrawRecord, how))
 
 typedef struct SharedMember {
     const char *name;
@@ -52,11 +62,11 @@ static const SharedStruct structs[] = {
 #undef M
 };
 
-// Structs that no shader declares: instances come as vertex attributes (engine/gpu/pipeline.c takes
-// their offsets from the C struct).
-static const char *const unused_structs[] = {"InstanceRecord", NULL};
+// Structs that no shader declares.
+static const char *const unused_structs[] = {NULL};
 
-// Which binding belongs to which block, or to which name of an image.
+// Which binding belongs to which block, or to which name of an image. Passes that make voxels have
+// a set 0 of their own (BUILD_): what they share with others is named twice.
 static const struct {
     const char *name;
     u32 set, binding;
@@ -88,6 +98,36 @@ static const struct {
     {"albedo_texture", 1, BINDING_ALBEDO_TEXTURE},
     {"normal_texture", 1, BINDING_NORMAL_TEXTURE},
     {"emissive_texture", 1, BINDING_EMISSIVE_TEXTURE},
+    {"FrameBuffer", 0, BUILD_FRAME},
+    {"GiFrameBuffer", 0, BUILD_FRAME},
+    {"GiBuffer", 0, BUILD_GI},
+    {"GiBuffer", 2, BINDING_GI},
+    {"GiTracedBuffer", 2, BINDING_GI_TRACED},
+    {"GiFlowBuffer", 0, BUILD_FLOW},
+    {"GiFlowBuffer", 2, BINDING_GI_FLOW},
+    {"GiMaterialBuffer", 0, BUILD_MATERIALS},
+    {"GiDirectionalBuffer", 0, BUILD_DIRECTIONALS},
+    {"GiVertexBuffer", 0, BUILD_VERTICES},
+    {"GiIndexBuffer", 0, BUILD_MESH_INDICES},
+    {"GiInstanceBuffer", 0, BUILD_INSTANCES},
+    {"GiMaskBuffer", 0, BUILD_MASKS},
+    {"GiMaskBuffer", 2, BINDING_GI_MASKS},
+    {"GiRankBuffer", 0, BUILD_RANKS},
+    {"GiRankBuffer", 2, BINDING_GI_RANKS},
+    {"GiVoxelBuffer", 0, BUILD_VOXELS},
+    {"GiAttributeBuffer", 0, BUILD_ATTRIBUTES},
+    {"GiAttributeBuffer", 2, BINDING_GI_ATTRIBUTES},
+    {"GiAccumulatorBuffer", 0, BUILD_ACCUMULATORS},
+    {"GiRadianceBuffer", 0, BUILD_RADIANCE},
+    {"GiCounterBuffer", 0, BUILD_COUNTERS},
+    {"GiLightBuffer", 0, BUILD_LIGHTS},
+    {"GiListBuffer", 0, BUILD_LISTS},
+    {"gi_shadow_map", 0, BUILD_SHADOW_MAP},
+    {"gi_base", 0, BUILD_BASE},
+    {"gi_base", 2, BINDING_GI_BASE},
+    {"gi_atlas", 0, BUILD_ATLAS},
+    {"gi_atlas", 2, BINDING_GI_ATLAS},
+    {"gi_atlas_nearest_mip", 2, BINDING_GI_ATLAS_NEAREST_MIP},
 };
 
 // --- What SPIR-V says ---
@@ -270,6 +310,8 @@ static const char *bound_name(const Module *module, const Id *variable) {
 }
 
 TEST(shared_reflection, bindings_agree_with_c) {
+    static const u32 binding_counts[] = {BINDING_FRAME_COUNT, BINDING_MATERIAL_COUNT,
+                                         BINDING_GI_COUNT};
     bool found[COUNT_OF(expected_bindings)] = {false};
     for (u32 b = 0; b < shader_blob_count; b++) {
         if (is_test_shader(shader_blobs[b].name)) continue; // they have their own
@@ -278,19 +320,22 @@ TEST(shared_reflection, bindings_agree_with_c) {
             const Id *variable = &module.ids[i];
             if (variable->op != OP_VARIABLE || !variable->has_binding) continue;
             const char *name = bound_name(&module, variable);
-            if (variable->set > 1 ||
-                variable->binding >= (variable->set ? BINDING_MATERIAL_COUNT : BINDING_FRAME_COUNT))
+            if (variable->set >= COUNT_OF(binding_counts) ||
+                variable->binding >= binding_counts[variable->set])
                 fail_msg("%s: %s is at set %u, binding %u, which shared.h does not have",
                          module.name, name, variable->set, variable->binding);
+            bool is_known = false, is_right = false;
             for (u32 e = 0; name && e < COUNT_OF(expected_bindings); e++) {
                 if (strcmp(name, expected_bindings[e].name) != 0) continue;
-                found[e] = true;
-                if (variable->set != expected_bindings[e].set ||
-                    variable->binding != expected_bindings[e].binding)
-                    fail_msg("%s: %s at set %u binding %u, in C at %u, %u", module.name, name,
-                             variable->set, variable->binding, expected_bindings[e].set,
-                             expected_bindings[e].binding);
+                bool same = variable->set == expected_bindings[e].set &&
+                            variable->binding == expected_bindings[e].binding;
+                found[e] |= same;
+                is_known = true;
+                is_right |= same;
             }
+            if (is_known && !is_right)
+                fail_msg("%s: %s at set %u binding %u, not so in C", module.name, name,
+                         variable->set, variable->binding);
         }
         free(module.ids);
     }
