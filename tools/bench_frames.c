@@ -40,6 +40,7 @@ void frame_bench_tick(FrameBench *run) { session_tick(&run->session, (Input){0})
 
 bool frame_bench_draw(FrameBench *run, FrameSample *out, Arena *arena, RenderImage *image) {
     session_frame_begin(&run->session);
+    run->view.cold = image != NULL; // timed frames are a player's
     f64 wall = clock_now_ms(), cpu = clock_process_cpu_ms();
     const Packet *packet = session_packet(&run->session, &run->view);
     out->packet_ms = clock_now_ms() - wall;

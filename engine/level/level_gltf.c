@@ -84,7 +84,8 @@ static void spawn_sun(LevelReader *reader) {
 static void set_environment(LevelReader *reader, bool has_lights) {
     // As level text has them: every singleton is there.
     for (u32 i = 0; i < COMPONENT_ENGINE_COUNT; i++)
-        if (reader->world->tables[i]->desc->singleton) world_singleton(reader->world, i);
+        if (reader->world->tables[i]->desc->singleton && i != COMPONENT_gi)
+            world_singleton(reader->world, i);
     u32 row = world_singleton(reader->world, COMPONENT_environment);
     EnvironmentTable *e = WORLD_TABLE(reader->world, Environment, environment);
     if (has_lights) {

@@ -110,13 +110,13 @@ static void read_level_table(LevelReader *reader, const TomlNode *table) {
 }
 
 // Singletons in the order of their ids, whatever the order of the file: handles do not depend on
-// it. The engine's own are always there.
+// it. The engine's own are always there, but for `gi`, which switches on what it describes.
 static void read_singletons(LevelReader *reader, const TomlNode *root) {
     for (u32 i = 0; i < reader->keys.count; i++) {
         const ComponentDesc *desc = reader->keys.components[i].desc;
         if (!desc->singleton) continue;
         const TomlNode *table = toml_find(root, desc->name);
-        if (!table && i >= COMPONENT_ENGINE_COUNT) continue;
+        if (!table && (i >= COMPONENT_ENGINE_COUNT || i == COMPONENT_gi)) continue;
         u32 row = world_singleton(reader->world, i);
         if (!table || !level_is_table(reader, table, desc->name)) continue;
         u32 first = reader->assignment_count;
@@ -154,6 +154,34 @@ static void warn_of_unused_prefabs(LevelReader *reader) {
                           reader->prefabs[i].name);
 }
 
+// Does it, or what it hangs on, move by itself?
+static bool moves(const World *world, Entity entity) {
+    const TransformTable *t = WORLD_TABLE(world, Transform, transform);
+    for (u32 row; (row = table_row(&t->table, entity)) != ROW_NONE; entity = t->parent[row])
+        if (table_row(world->tables[COMPONENT_orbit], entity) != ROW_NONE ||
+            table_row(world->tables[COMPONENT_path], entity) != ROW_NONE)
+            return true;
+    return false;
+}
+
+// Static voxels are made once: what moves would have all of them made anew at every tick.
+static void warn_of_moving_voxels(LevelReader *reader, TomlPlace place) {
+    const World *world = reader->world;
+    const InstanceTable *instances = WORLD_TABLE(world, Instance, instance);
+    u32 count = 0;
+    const char *name = "";
+    for (u32 row = 0; row < instances->table.count; row++) {
+        Entity entity = instances->table.entity[row];
+        if (instances->voxel_mode[row] != VOXEL_STATIC || !moves(world, entity)) continue;
+        if (count++ == 0) name = world_name(world, entity);
+    }
+    if (count > 0)
+        level_warning(reader, place, "write instance.voxel_mode = \"dynamic\", or \"none\"",
+                      "%u instance%s move%s but %s voxelised as static%s%s%s", count,
+                      count == 1 ? "" : "s", count == 1 ? "s" : "", count == 1 ? "is" : "are",
+                      name[0] ? ", first '" : "", name, name[0] ? "'" : "");
+}
+
 static void read_toml(LevelReader *reader) {
     TomlNode *root;
     TomlError error;
@@ -172,6 +200,7 @@ static void read_toml(LevelReader *reader) {
     level_spawn_all(reader);
     level_spawn_all_drawables(reader, root->place);
     warn_of_unused_prefabs(reader);
+    if ((node = toml_find(root, "gi"))) warn_of_moving_voxels(reader, node->key_place);
 }
 
 static bool has_suffix(const char *path, const char *suffix) {

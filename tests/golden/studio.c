@@ -47,7 +47,8 @@ RenderImage studio_draw(Studio *studio, const char *camera, const RenderSettings
     const Packet *packet = session_packet(&studio->session, &(SessionView){.camera = camera,
                                                                            .settings = *settings,
                                                                            .width_px = width_px,
-                                                                           .height_px = height_px});
+                                                                           .height_px = height_px,
+                                                                           .cold = true});
     assert_non_null(packet);
     assert_null(packet_validate(packet, packet->size, studio->session.assets.mesh_count,
                                 studio->session.assets.texture_count));

@@ -1,6 +1,8 @@
 // systems_gi.c: what a packet says of global illumination: box, grids, draws, lists, traced lights.
 // Keys and flags: systems_gi_keys.c.
 #include "systems_gi_fixture.h"
+#include "../../engine/base/hash.h"
+#include "../../engine/base/jobs.h"
 #include "../../engine/base/random.h"
 #include <stdio.h>
 #include <string.h>
@@ -488,6 +490,43 @@ TEST(systems_gi, the_first_traced_lights_stay_the_same_as_the_view_turns) {
     }
     assert_int_equal(ever, 0xFFFF);
     systems_fixture_destroy(f);
+}
+
+// The light that stands for a pair has no shadow from the voxels.
+TEST(systems_gi, traced_lights_are_never_merged) {
+    SystemsFixture *f = systems_fixture_create(1);
+    fixture_spawn_mesh(f, MESH_CUBE, vec3(0, 0, -90), vec3(30, 30, 30), 0, COLLISION_NONE);
+    u32 merged[2];
+    for (u32 round = 0; round < 2; round++) {
+        for (u32 i = 0; i < 2 && round == 0; i++)
+            fixture_spawn_light(f, LIGHT_POINT, vec3(0.2f * (f32)i, 0, -60), 4);
+        LightTable *light = FIXTURE_TABLE(f, Light, light);
+        light->screen_shadow[0] = round ? SCREEN_SHADOW_CONE : SCREEN_SHADOW_MAP;
+        systems_settle(&f->systems, &f->context);
+        const Packet *p = gi_packet(f, ENTITY_NONE, "gi.enabled=on");
+        merged[round] = p->counts.lights_merged_pairs;
+        assert_int_equal(p->traced_lights.count, round);
+    }
+    assert_int_equal(merged[0], 1);
+    assert_int_equal(merged[1], 0);
+    systems_fixture_destroy(f);
+}
+
+static u64 voxel_packet_hash(u32 threads) {
+    jobs_start(threads);
+    SystemsFixture *f = systems_fixture_create(1);
+    fixture_fill(f, 0x7B, 400);
+    systems_settle(&f->systems, &f->context);
+    const Packet *p = gi_packet(f, ENTITY_NONE, "gi.enabled=on,gi.cascades=3");
+    u64 hash = hash_bytes(p, p->size, 0);
+    systems_fixture_destroy(f);
+    jobs_stop();
+    return hash;
+}
+
+TEST(systems_gi, threads_do_not_matter) {
+    u64 one = voxel_packet_hash(1);
+    assert_true(one == voxel_packet_hash(2) && one == voxel_packet_hash(8));
 }
 
 TEST(systems_gi, gi_lights_do_not_hang_on_the_view) {
