@@ -2,7 +2,8 @@
 //
 // Of the eight probes around a place each counts with its trilinear share, if it stands before the
 // surface and nothing lies between (its three free ways along the axes, see gi_probes.comp): what is
-// behind a wall, or in it, does not leak. Where none is left all before the surface count.
+// behind a wall, or in it, does not leak. What speaks against a probe leaves it a tiny weight, so
+// that places where something speaks against all eight get the best there is.
 #ifndef GI_PROBE_LOOKUP_GLSL
 #define GI_PROBE_LOOKUP_GLSL
 #include "gi_probe_code.glsl"
@@ -23,13 +24,13 @@ GiProbeLight gi_probe_light(vec3 world, vec3 normal, uint count) {
     vec3 last = vec3(gi.probes.xyz) - 2.0;
     vec3 seat = place + normal * GI_PROBE_OFFSET;
     vec3 low = clamp(floor(seat), vec3(0.0), last), share = clamp(seat - low, 0.0, 1.0);
-    // Voxels are as thick as their surfaces are unsure.
-    float slack = 1.5 * gi.origin[GI_CASCADES - 1u].w * per_metre + GI_PROBE_REACH / 31.0;
+    // A surface is anywhere in its voxel.
+    float slack = gi.origin[GI_CASCADES - 1u].w * per_metre + GI_PROBE_STEP;
     vec3 weight = normal * normal;
     ivec3 block = ivec3(normal.x < 0.0 ? 1 : 0, normal.y < 0.0 ? 3 : 2, normal.z < 0.0 ? 5 : 4) *
                   int(gi.probes.x);
-    vec4 sum = vec4(0.0), rest = vec4(0.0);
-    float sum_weight = 0.0, rest_weight = 0.0;
+    vec4 sum = vec4(0.0);
+    float sum_weight = 0.0;
     for (uint i = 0u; i < count; i++) {
         uvec3 corner = uvec3(i & 1u, i >> 1 & 1u, i >> 2);
         vec3 near = mix(1.0 - share, share, vec3(corner));
@@ -44,18 +45,14 @@ GiProbeLight gi_probe_light(vec3 world, vec3 normal, uint count) {
                          dot(vec3(cx.open, cy.open, cz.open), weight));
         vec3 free = vec3(way.x > 0.0 ? cx.up : cx.down, way.y > 0.0 ? cy.up : cy.down,
                          way.z > 0.0 ? cz.up : cz.down);
-        bool is_valid = cx.up > 0.0;
-        vec3 seen = clamp((free + slack - abs(way)) * 8.0, vec3(0.0), vec3(1.0));
-        float before = clamp(-dot(way, normal) * 8.0 + 0.25, 0.0, 1.0);
-        float w = near.x * near.y * near.z * before * (is_valid ? 1.0 : 0.0);
-        rest += says * w;
-        rest_weight += w;
-        w *= seen.x * seen.y * seen.z;
+        vec3 seen = clamp((free + slack - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
+        float before = clamp(-dot(way, normal) * 8.0 + 0.25, 1e-4, 1.0);
+        float valid = cx.up + cx.down > 0.0 ? 1.0 : 1e-6;
+        float w = near.x * near.y * near.z * before * valid * (seen.x * seen.y * seen.z) + 1e-20;
         sum += says * w;
         sum_weight += w;
     }
-    float doubt = clamp(1.0 - sum_weight * 1000.0, 0.0, 1.0) * 1e-3;
-    sum = (sum + rest * doubt) / max(sum_weight + rest_weight * doubt, 1e-6);
+    sum /= max(sum_weight, 1e-20);
     return GiProbeLight(sum.rgb, sum.a);
 }
 #endif

@@ -5,8 +5,8 @@
 // engine"): for each of six directions the light that a surface facing it gets. Twelve cones through
 // the voxels, towards the corners of an icosahedron, are shared by all six: each counts with the mean
 // cosine over its own width. Besides a probe knows how far it is to the nearest occupied voxel along
-// each axis: who looks it up leaves out probes behind walls, and those that stand in one (0 all
-// around).
+// each axis: who looks it up leaves out probes behind walls. One that stands in a wall steps out of
+// it, and its way back is 0; all ways of one that stands too deep are 0.
 //
 // Texel of block d (x = d * probes + x): rgb light for a surface that faces d, radiance; a: a code of
 // 15 bits (gi_probe_code): d's axis' two distances and how open the probe is towards d.
@@ -36,23 +36,50 @@ float cosine_share(float cosine) {
     return cosine < -0.3 ? 0.0 : share * (1.0 / 3.001396);
 }
 
-// Voxels of a cascade from a place to the first occupied one along an axis, not counting its own;
-// 0: its own is occupied.
-const int STEPS_CAP = 64;
-float free_way(uint cascade, vec3 place, uint axis, int sign, int steps) {
-    ivec3 at = ivec3(floor(place)), stride = ivec3(0), dims = ivec3(gi.dims.xyz);
-    stride[axis] = sign;
-    int i = 0;
-    for (; i < steps; i++) {
-        bool is_inside = all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, dims));
-        ivec3 held = clamp(at, ivec3(0), dims - 1);
-        bool is_met = gi_occupied(gi_bit(uvec3(held) + uvec3(0u, 0u, gi.dims.z * cascade)));
-        if (is_inside && is_met) break;
-        at += stride;
+// --- Free ways ---
+
+const int STEPS_CAP = 64, WALL_CAP = 3; // voxels: that are walked; of wall that a probe leaves
+
+bool is_free(uint cascade, ivec3 at) {
+    ivec3 dims = ivec3(gi.dims.xyz), held = clamp(at, ivec3(0), dims - 1);
+    return at != held || !gi_occupied(gi_bit(uvec3(held) + uvec3(0u, 0u, gi.dims.z * cascade)));
+}
+ivec3 along(uint d) {
+    ivec3 stride = ivec3(0);
+    stride[d >> 1] = (d & 1u) == 0u ? 1 : -1;
+    return stride;
+}
+
+// Voxels from a place in a free voxel to the next occupied one towards d; 1e9: none so near.
+float free_way(uint cascade, vec3 place, uint d, int steps) {
+    ivec3 stride = along(d), at = ivec3(floor(place));
+    int i = 1;
+    for (; i < steps && is_free(cascade, at + stride * i); i++) {}
+    float within = fract(place[d >> 1]);
+    return i < steps ? float(i) - ((d & 1u) == 0u ? within : 1.0 - within) : 1e9;
+}
+
+// A probe that stands in a thin wall steps out of it, to where most room is. Returns the direction,
+// 6: it is free, 7: too deep; place becomes the middle of the voxel on that way.
+uint leave_wall(uint cascade, inout vec3 place, int steps) {
+    ivec3 at = ivec3(floor(place)), found = at;
+    int most = 0;
+    uint way = is_free(cascade, at) ? 6u : 7u;
+    for (uint d = 0u; d < (way == 6u ? 0u : 6u); d++) {
+        ivec3 stride = along(d);
+        int wall = 1;
+        for (; wall < WALL_CAP && !is_free(cascade, at + stride * wall); wall++) {}
+        int room = wall < WALL_CAP ? 0 : steps;
+        for (; room < steps && is_free(cascade, at + stride * (wall + room)); room++) {}
+        room = wall < WALL_CAP ? room : 0;
+        found = room > most ? at + stride * wall : found;
+        way = room > most ? d : way;
+        most = max(most, room);
     }
-    float within = fract(place[axis]);
-    float way = float(i) - (sign > 0 ? within : 1.0 - within);
-    return i == 0 ? 0.0 : i == steps ? 1e9 : way;
+    vec3 middle = vec3(found) + 0.5;
+    for (uint axis = 0u; axis < 3u; axis++)
+        place[axis] = way >> 1 == axis ? middle[axis] : place[axis];
+    return way;
 }
 
 void main() {
@@ -60,8 +87,14 @@ void main() {
     uint index = first + stride * gl_GlobalInvocationID.x;
     uvec3 size = gi.probes.xyz;
     uvec3 at = uvec3(index % size.x, index / size.x % size.y, index / (size.x * size.y));
-    float spacing = gi.probe_origin.w;
-    vec3 world = gi.probe_origin.xyz + vec3(at) * spacing;
+    vec3 world = gi.probe_origin.xyz + vec3(at) * gi.probe_origin.w;
+    // As far as a code reaches.
+    uint cascade = min(gi_cascade(world, 0.0), GI_CASCADES - 1u);
+    float across = gi_flow.probe_origin.w / gi_flow.origin[cascade].w; // voxels to the next probe
+    int steps = min(int(GI_PROBE_REACH * across) + 2, STEPS_CAP);
+    vec3 place = gi_to_voxels(world, cascade);
+    uint out_of = leave_wall(cascade, place, steps);
+    world = gi_to_world(place, cascade);
 
     vec3 light[6] = vec3[](vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0));
     float open[6] = float[](0, 0, 0, 0, 0, 0);
@@ -77,19 +110,19 @@ void main() {
         }
     }
 
-    uint cascade = min(gi_cascade(world, 0.0), GI_CASCADES - 1u);
-    float voxel = gi.origin[cascade].w;
-    vec3 place = gi_to_voxels(world, cascade);
-    // As far as a code reaches.
-    float across = gi_flow.probe_origin.w / gi_flow.origin[cascade].w;
-    int steps = min(int(GI_PROBE_REACH * across) + 2, STEPS_CAP);
     for (uint axis = 0u; axis < 3u; axis++) {
-        float up = free_way(cascade, place, axis, 1, steps) * voxel / spacing;
-        float down = free_way(cascade, place, axis, -1, steps) * voxel / spacing;
+        // Each way as the probe's own place has it: what lies behind one that moved is wall.
+        float ways[2];
+        for (uint side = 0u; side < 2u; side++) {
+            uint d = axis * 2u + side;
+            float way = max(free_way(cascade, place, d, steps) / across, GI_PROBE_STEP);
+            ways[side] = out_of == 7u || out_of == (d ^ 1u) ? 0.0 : way;
+        }
         for (uint side = 0u; side < 2u; side++) {
             uint d = axis * 2u + side;
             imageStore(probes, ivec3(uvec3(at.x + d * size.x, at.yz)),
-                       vec4(min(light[d], vec3(65000.0)), gi_probe_code(up, down, open[d])));
+                       vec4(min(light[d], vec3(65000.0)),
+                            gi_probe_code(ways[0], ways[1], open[d])));
         }
     }
 }

@@ -285,8 +285,9 @@ static void decide(Renderer *renderer, const Packet *packet) {
     gi->relight = gi->voxelise_static || gi->voxelise_dynamic || !gi->has_lit ||
                   gi->light_key != wanted->light_key || wanted->params.feedback;
     bool has_probes = wanted->params.diffuse == GI_DIFFUSE_PROBES;
-    if (gi->relight || gi->is_cold || gi->probe_key != wanted->light_key)
-        gi->probe_turns_left = gi->is_cold ? 1 : wanted->params.share;
+    if (gi->relight || gi->probe_key != wanted->light_key)
+        gi->probe_turns_left = wanted->params.share;
+    if (gi->is_cold && gi->probe_turns_left > 0) gi->probe_turns_left = 1; // all at once
     gi->trace_probes = has_probes && gi->probe_turns_left > 0;
     RendererStats *stats = &renderer->stats;
     if (gi->voxelise_static) {
