@@ -1,0 +1,240 @@
+// gi_screen.c: indirect light on the screen: the same in every path and layout, also with several
+// samples a pixel; what fewer traced pixels cost; and that nothing changes without it.
+// Data in: levels, settings. Data out: pictures compared. Called by: the runner.
+#include "studio.h"
+#include "../../engine/base/random.h"
+#include "../../engine/capture/image_compare.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 160, HEIGHT = 90 };
+#define GI "gi.enabled=on,gi.grid=32"
+
+static RenderImage draw(Studio *studio, const char *list, u32 width, u32 height) {
+    RenderSettings settings = settings_default();
+    if (!settings_set_list(&settings, list)) fail_msg("settings: %s", list);
+    return studio_draw(studio, NULL, &settings, width, height);
+}
+
+static ImageDifference difference(Studio *studio, RenderImage a, RenderImage b) {
+    return image_compare(a.rgba, b.rgba, a.width_px, a.height_px, &studio->images);
+}
+
+// A fifth of the colour channels, at least, is another by more than 4.
+static bool is_other_picture(RenderImage a, RenderImage b) {
+    u32 changed = 0, count = a.width_px * a.height_px * 4;
+    for (u32 i = 0; i < count; i++)
+        changed += a.rgba[i] > b.rgba[i] + 4 || b.rgba[i] > a.rgba[i] + 4;
+    return changed > count / 20;
+}
+
+// --- Every path ---
+
+static const char *const ways[] = {
+    "deferred",
+    "deferred_volumes",
+    "deferred_volumes,light_volume=stencil",
+    "tiled_deferred",
+    "clustered_deferred",
+    "clustered_deferred,clusters=gpu",
+    "forward",
+    "multipass",
+    "tiled_forward",
+    "tiled_forward,tile_depth=mask",
+    "clustered_forward",
+    "clustered_forward,clusters=gpu",
+    // Nobody asks for a layout there: what GI draws for itself is lean.
+    "tiled_forward,layout=killzone2",
+};
+
+static void check_ways(const char *level, u32 ticks, u32 width, u32 height, const char *more) {
+    Studio studio;
+    studio_open(&studio, level);
+    session_advance(&studio.session, ticks);
+    RenderImage reference = {0};
+    for (u32 i = 0; i < COUNT_OF(ways); i++) {
+        char list[256];
+        snprintf(list, sizeof list, "%s,%s%s", ways[i], GI, more);
+        RenderImage image = draw(&studio, list, width, height);
+        if (i == 0) {
+            reference = image;
+            RenderImage without = draw(&studio, "deferred,gi.enabled=off", width, height);
+            if (!is_other_picture(image, without)) fail_msg("%s: GI changes nothing", level);
+        }
+        ImageDifference d = difference(&studio, reference, image);
+        if (d.max > 2) fail_msg("%s, %s: max %u at %u,%u", level, list, d.max, d.max_x, d.max_y);
+    }
+    studio_close(&studio);
+}
+
+TEST_GPU(golden, gi_paths_agree) { check_ways("data/levels/cornell.toml", 30, WIDTH, HEIGHT, ""); }
+TEST_GPU(golden, gi_paths_agree_at_half_resolution) {
+    check_ways("data/levels/cornell.toml", 30, 97, 53, ",gi.resolution=half");
+}
+TEST_GPU(golden, gi_paths_agree_in_the_cloister) {
+    check_ways("data/levels/cloister.toml", 90, WIDTH, HEIGHT, ",gi.resolution=quarter");
+}
+
+// --- Every layout: those that lose nothing agree, the others stay near ---
+
+TEST_GPU(golden, gi_layouts_stay_near) {
+    static const struct {
+        const char *name;
+        u32 max;
+        f64 mean; // of 255
+    } layouts[] = {{"wide", 3, 0.1},  {"packed", 24, 1.0},    {"packed24", 24, 1.0},
+                   {"half5", 4, 0.2}, {"killzone2", 40, 2.0}, {"starcraft2", 8, 0.6},
+                   {"il", 16, 0.6}};
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    session_advance(&studio.session, 30);
+    RenderImage lean = draw(&studio, "clustered_deferred,layout=lean," GI, WIDTH, HEIGHT);
+    for (u32 i = 0; i < COUNT_OF(layouts); i++) {
+        char list[256];
+        snprintf(list, sizeof list, "clustered_deferred,layout=%s,%s", layouts[i].name, GI);
+        ImageDifference d = difference(&studio, lean, draw(&studio, list, WIDTH, HEIGHT));
+        printf("layout %s: max %u, mean %.3f, SSIM %.4f\n", layouts[i].name, d.max, d.mean, d.ssim);
+        if (d.max > layouts[i].max || d.mean > layouts[i].mean)
+            fail_msg("layout %s: max %u at %u,%u, mean %g", layouts[i].name, d.max, d.max_x,
+                     d.max_y, d.mean);
+    }
+    studio_close(&studio);
+}
+
+// --- Samples ---
+
+// Four samples: the same inside of surfaces; where surfaces end, no pixel leaves the range that its
+// neighbours have without samples (no halos of unlit samples).
+TEST_GPU(golden, gi_with_samples) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    session_advance(&studio.session, 30);
+    static const char *const paths[] = {"forward", "tiled_forward", "clustered_forward"};
+    for (u32 p = 0; p < COUNT_OF(paths); p++)
+        for (u32 half = 0; half < 2; half++) {
+            char one[128], four[160];
+            const char *resolution = half ? "half" : "full";
+            snprintf(one, sizeof one, "%s,%s,gi.resolution=%s", paths[p], GI, resolution);
+            snprintf(four, sizeof four, "%s,msaa=4", one);
+            RenderImage a = draw(&studio, one, WIDTH, HEIGHT);
+            RenderImage b = draw(&studio, four, WIDTH, HEIGHT);
+            u32 outside = 0, inside = 0;
+            for (u32 y = 1; y + 1 < HEIGHT; y++)
+                for (u32 x = 1; x + 1 < WIDTH; x++) {
+                    u32 most = 0, contrast = 0;
+                    for (u32 c = 0; c < 3; c++) {
+                        i32 low = 255, high = 0, value = b.rgba[(y * WIDTH + x) * 4 + c];
+                        for (u32 k = 0; k < 9; k++) {
+                            i32 near = a.rgba[((y + k / 3 - 1) * WIDTH + x + k % 3 - 1) * 4 + c];
+                            low = MIN(low, near), high = MAX(high, near);
+                        }
+                        i32 beyond = value < low ? low - value : value > high ? value - high : 0;
+                        most = MAX(most, (u32)beyond);
+                        contrast = MAX(contrast, (u32)(high - low));
+                    }
+                    outside += most > 6;
+                    inside += most > 2 && contrast < 8;
+                }
+            printf("%s: %u pixels beyond their neighbours, %u of them inside\n", four, outside,
+                   inside);
+            if (outside > WIDTH * HEIGHT / 500 || inside > 0)
+                fail_msg("%s: %u pixels beyond their neighbours, %u inside", four, outside, inside);
+        }
+    studio_close(&studio);
+}
+
+// --- Fewer traced pixels ---
+
+static void check_resolutions(const char *level, u32 ticks, f64 half_ssim, f64 quarter_ssim) {
+    Studio studio;
+    studio_open(&studio, level);
+    session_advance(&studio.session, ticks);
+    RenderImage full = draw(&studio, "tiled_deferred," GI, 320, 180);
+    static const char *const words[] = {"half", "quarter"};
+    const f64 least[] = {half_ssim, quarter_ssim};
+    for (u32 i = 0; i < 2; i++)
+        for (u32 dither = 0; dither < 2; dither++) {
+            char list[160];
+            snprintf(list, sizeof list, "tiled_deferred,%s,gi.resolution=%s,gi.dither=%s", GI,
+                     words[i], dither ? "on" : "off");
+            RenderImage image = draw(&studio, list, 320, 180);
+            ImageDifference d = difference(&studio, full, image);
+            printf("%s: %s%s: SSIM %.4f, mean %.3f, max %u\n", level, words[i],
+                   dither ? ", dithered" : "", d.ssim, d.mean, d.max);
+            if (d.ssim < least[i])
+                fail_msg("%s: %s: SSIM %.4f, should be %.4f", level, words[i], d.ssim, least[i]);
+        }
+    studio_close(&studio);
+}
+TEST_GPU(golden, gi_resolutions) { check_resolutions("data/levels/cornell.toml", 30, 0.985, 0.97); }
+TEST_GPU(golden, gi_resolutions_in_the_cloister) {
+    check_resolutions("data/levels/cloister.toml", 90, 0.97, 0.95);
+}
+
+// --- Off is off; any settings ---
+
+// Drawn with GI and without by turns, the pictures without are those of a renderer that never had
+// it.
+TEST_GPU(golden, gi_off_leaves_nothing_behind) {
+    Studio fresh, used;
+    static const char *const paths[] = {"deferred", "tiled_forward", "multipass", "forward,msaa=4"};
+    studio_open(&fresh, "data/levels/cornell.toml");
+    studio_open(&used, "data/levels/cornell.toml");
+    for (u32 i = 0; i < COUNT_OF(paths); i++) {
+        char off[96], on[96];
+        snprintf(off, sizeof off, "%s,gi.enabled=off", paths[i]);
+        snprintf(on, sizeof on, "%s,%s", paths[i], GI);
+        u64 hash = draw(&fresh, off, 96, 54).hash;
+        draw(&used, on, 96, 54);
+        assert_true(draw(&used, off, 96, 54).hash == hash);
+        // And with it, the same as without what came before.
+        u64 first = draw(&used, on, 96, 54).hash;
+        assert_true(draw(&used, on, 96, 54).hash == first);
+    }
+    studio_close(&used);
+    studio_close(&fresh);
+}
+
+// A setting and its values, some of them more often.
+static const char *const choices[][5] = {
+    {"gi.enabled", "on", "on", "on", "off"},
+    {"gi.grid", "32", "64"},
+    {"gi.cascades", "1", "1", "2", "3"},
+    {"gi.diffuse", "cones", "none", "probes", "voxels"},
+    {"gi.resolution", "full", "half", "quarter"},
+    {"gi.specular", "on", "off"},
+    {"gi.ao", "on", "off"},
+    {"gi.dither", "off", "on"},
+    {"gi.mips", "linear", "nearest"},
+    {"gi.faces", "shared", "apart"},
+    {"gi.filter", "directional", "directional", "isotropic"},
+    {"gi.format", "half", "byte"},
+    {"gi.bounces", "2", "1"},
+    {"gi.cone_shadows", "on", "off"},
+    {"msaa", "1", "4"},
+};
+
+// A hundred pictures of random settings, small ones: the layer has nothing to say (the runner
+// looks), and each comes out the same the second time.
+TEST_GPU(golden, gi_random_settings) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    const u64 seed = 0x5C4EE4;
+    for (u32 i = 0; i < 100; i++) {
+        char list[768];
+        u32 used = (u32)snprintf(list, sizeof list, "%s",
+                                 ways[random_u32(seed, i, 1000) % COUNT_OF(ways)]);
+        for (u32 k = 0; k < COUNT_OF(choices); k++) {
+            u32 count = 0;
+            while (count < 4 && choices[k][1 + count]) count++;
+            used += (u32)snprintf(list + used, sizeof list - used, ",%s=%s", choices[k][0],
+                                  choices[k][1 + random_u32(seed, i, k) % count]);
+        }
+        RenderImage first = draw(&studio, list, 40, 24);
+        if (i % 4 == 0 && draw(&studio, list, 40, 24).hash != first.hash)
+            fail_msg("picture %u (seed %llx) comes out different: %s", i, (unsigned long long)seed,
+                     list);
+        session_advance(&studio.session, 1);
+    }
+    studio_close(&studio);
+}
