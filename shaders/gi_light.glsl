@@ -155,7 +155,9 @@ void store(uint slot) {
     if (GI_FACES != 0u) {
         for (uint f = 0u; f < 6u; f++) {
             vec3 sent = emission + albedo * light[f] * (1.0 / PI);
-            gi_store_radiance(slot, f, vec4(sent * voxel_face(f), 1.0));
+            // From behind a face is dark, not clear.
+            float opacity = max(voxel_face(f), voxel_face(f ^ 1u));
+            gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity));
         }
     } else {
         vec4 radiance = vec4(emission + albedo * light[0] * (1.0 / PI), 1.0);

@@ -14,6 +14,9 @@
 #include <string.h>
 
 #define GI_SLOTS_MIN 4096
+// With feedback, frames after a change in which light still bounces on: of walls with an albedo of
+// 0.7, 0.3 % of what goes round are left to come.
+#define GI_FEEDBACK_FRAMES 16
 // Buffers by slot that were too small grow to what was wanted and this share more.
 #define GI_SLOTS_SPARE(count) ((count) + (count) / 8)
 
@@ -283,7 +286,12 @@ static void decide(Renderer *renderer, const Packet *packet) {
     if (gi->voxelise_static) gi->dynamic_key = 0; // what is static now takes voxels from them
     gi->voxelise_dynamic = dynamic_is_due(gi, packet) || warming_up;
     gi->relight = gi->voxelise_static || gi->voxelise_dynamic || !gi->has_lit ||
-                  gi->light_key != wanted->light_key || wanted->params.feedback;
+                  gi->light_key != wanted->light_key;
+    if (gi->relight || gi->is_cold) gi->feedback_left = GI_FEEDBACK_FRAMES;
+    if (wanted->params.feedback && gi->feedback_left > 0) {
+        gi->relight = true;
+        gi->feedback_left--;
+    }
     bool has_probes = wanted->params.diffuse == GI_DIFFUSE_PROBES;
     if (gi->relight || gi->probe_key != wanted->light_key)
         gi->probe_turns_left = wanted->params.share;
@@ -321,6 +329,12 @@ static void find_shadows(GiState *gi, const Packet *packet) {
     gi->voxel_shadows = gi->traced_shadows = 0;
     for (u32 i = 0; i < packet->gi_lights.count; i++)
         gi->voxel_shadows |= 1u << ((u32)lights[i].color[3] & 3);
+    const DirectionalRecord *suns = PACKET_DATA(packet, directionals, DirectionalRecord);
+    for (u32 i = 0; i < packet->directionals.count; i++)
+        if (suns[i].direction[3] >= 0.0f)
+            gi->voxel_shadows |= 1u << ((u32)suns[i].direction[3] & 3);
+    if (packet->gi.params.solid) gi->voxel_shadows |= GI_VISIBILITY_SOLID;
+    if (wants_visibility(packet)) gi->voxel_shadows |= GI_VISIBILITY_KEPT;
     for (u32 i = 0; i < packet->traced_lights.count; i++)
         gi->traced_shadows |= 1u << ((u32)traced[i].shadow[2] & 1);
 }

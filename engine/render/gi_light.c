@@ -84,9 +84,10 @@ static void gather_record(const PassContext *c) {
 }
 #define GATHER_USES                                                                                \
     USE(GI_VOXELS, STORAGE_READ_COMPUTE), USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE),                \
-        USE(GI_COUNTERS, INDIRECT), USE(GI_BASE, SAMPLED_COMPUTE), USE(GI_ATLAS, SAMPLED_COMPUTE)
+        USE(GI_MASKS, STORAGE_READ_COMPUTE), USE(GI_COUNTERS, INDIRECT),                           \
+        USE(GI_BASE, SAMPLED_COMPUTE), USE(GI_ATLAS, SAMPLED_COMPUTE)
 static const Pass gather_pass = {
-    "voxel bounce", {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE)}, 6, gather_record, NULL, NULL};
+    "voxel bounce", {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE)}, 7, gather_record, NULL, NULL};
 
 static void bounce_expand(const PassContext *c) {
     bool all_rounds = c->packet->gi.params.feedback && !gi_feeds_back(c);
@@ -124,7 +125,7 @@ static const Pass irradiance_clear_pass = {"voxel irradiance start",
                                            NULL};
 static const Pass irradiance_gather_pass = {"voxel irradiance",
                                             {GATHER_USES, USE(GI_IRRADIANCE, STORAGE_COMPUTE)},
-                                            6,
+                                            7,
                                             irradiance_record,
                                             NULL,
                                             NULL};

@@ -276,6 +276,7 @@ typedef struct GiState {
     u32 dynamic_tick; // of the packet whose dynamic instances were voxelised last
     // Probes: whose turn it is (is_cold: everybody's), frames until all had theirs.
     u32 probe_turn, probe_turns_left;
+    u32 feedback_left; // frames in which feedback goes on without a change
     bool has_dynamic; // dynamic voxels are in the masks
     bool has_lit;     // the volumes were lit since they are there
     bool is_warm;     // every pass has run

@@ -43,7 +43,7 @@ void light_result_free(LightResult *result);
 
 // The naive twin: radiance of a slot's face (0 if faces are shared), and the mean visibility.
 typedef struct LightSum {
-    f32 face[6][3];
+    f32 face[6][3], opacity[6];
     f32 visibility;
 } LightSum;
 LightSum light_twin(const VoxelScene *stage, u32 slot);

@@ -201,11 +201,13 @@ LightSum light_twin(const VoxelScene *stage, u32 slot) {
         add(stage, &v, weight, l, c, &sum);
     }
     u32 faces = stage->spec[SPEC_GI_FACES] ? 6 : 1;
-    for (u32 f = 0; f < faces; f++)
+    for (u32 f = 0; f < faces; f++) {
+        sum.opacity[f] = faces > 1 ? MAX(weight[f], weight[f ^ 1]) : 1.0f;
         for (u32 k = 0; k < 3; k++) {
-            sum.face[f][k] = v.emission[k] + v.albedo[k] * sum.face[f][k] * 0.318309886f;
-            if (faces > 1) sum.face[f][k] *= weight[f];
+            f32 sent = v.emission[k] + v.albedo[k] * sum.face[f][k] * 0.318309886f;
+            sum.face[f][k] = faces > 1 ? sent * weight[f] : sent;
         }
+    }
     sum.visibility = asked > 0.0f ? seen / asked : 1.0f;
     return sum;
 }
