@@ -4,13 +4,14 @@
 // view: voxels outside it are lit as well.
 //
 // Cells are 4 to 16 voxels wide. Two passes over all lights, for each layer of cells by itself:
-// count, then fill; so the result does not depend on the number of threads. A ball is tested
-// against each cell's box; a cone besides against the ball around the cell.
+// count, then fill; so the result does not depend on the number of threads. A ball's cells are
+// found row by row, exactly; those of a cone are tested besides, each by the ball around it.
 #include "gi.h"
 #include "../base/jobs.h"
 #include <string.h>
 
-#define CELL_VOXELS 4
+#define CELL_VOXELS    4
+#define LAYERS_PER_JOB 4
 // Cells are this part of their side larger than they are: positions in shaders are rounded.
 #define CELL_SLACK  (1.0f / 64.0f)
 #define REACH_SLACK 1e-5f
@@ -56,23 +57,42 @@ static ListShape make_shape(const ListJob *job, const GiLightRecord *light) {
     return shape;
 }
 
-static bool touches(const ListJob *job, const ListShape *shape, const u32 cell[3]) {
-    f32 distance2 = 0.0f, v2 = 0.0f, along = 0.0f;
+// How far a coordinate is outside the cell's interval along an axis.
+static f32 axis_distance(const ListJob *job, u32 axis, u32 cell, f32 at) {
+    f32 slack = job->side[axis] * CELL_SLACK;
+    f32 low = job->origin[axis] + (f32)cell * job->side[axis] - slack;
+    return MAX(MAX(low - at, at - (low + job->side[axis] + 2.0f * slack)), 0.0f);
+}
+
+// The ball around the cell, against the cone as a whole: how far its centre is from a plane that
+// touches the cone along the line nearest to it.
+static bool cone_touches(const ListJob *job, const ListShape *shape, u32 x, u32 y, u32 z) {
+    const u32 cell[3] = {x, y, z};
+    f32 v2 = 0.0f, along = 0.0f;
     for (u32 a = 0; a < 3; a++) {
-        f32 slack = job->side[a] * CELL_SLACK;
-        f32 low = job->origin[a] + (f32)cell[a] * job->side[a] - slack,
-            high = low + job->side[a] + 2.0f * slack;
-        f32 outside = MAX(MAX(low - shape->tip[a], shape->tip[a] - high), 0.0f);
-        distance2 += outside * outside;
-        f32 v = 0.5f * (low + high) - shape->tip[a];
+        f32 v = job->origin[a] + ((f32)cell[a] + 0.5f) * job->side[a] - shape->tip[a];
         v2 += v * v;
         along += v * shape->axis[a];
     }
-    if (distance2 > shape->reach * shape->reach) return false;
-    if (!(shape->cos_h > 0.0f)) return true;
-    // How far the ball's centre is from a plane that touches the cone along the line nearest to it.
     f32 across = sqrtf(MAX(v2 - along * along, 0.0f));
     return across * shape->cos_h - along * shape->sin_h <= job->radius;
+}
+
+// Cells of a row that the ball touches: those whose interval comes within its half width there.
+static void list_row(const ListJob *job, const ListShape *shape, u32 index, u32 y, u32 z,
+                     f32 half) {
+    f32 low = (shape->tip[0] - half - job->origin[0]) / job->side[0] - CELL_SLACK,
+        high = (shape->tip[0] + half - job->origin[0]) / job->side[0] + CELL_SLACK;
+    if (!(high >= 0.0f && low <= (f32)job->cells[0])) return;
+    u32 first = low > 0.0f ? MIN((u32)low, job->cells[0] - 1) : 0;
+    u32 last = high < (f32)job->cells[0] ? (u32)high : job->cells[0] - 1;
+    u32 *counts = job->counts + job->cells[0] * (y + (u64)job->cells[1] * z);
+    bool is_cone = shape->cos_h > 0.0f;
+    for (u32 x = first; x <= last; x++) {
+        if (is_cone && !cone_touches(job, shape, x, y, z)) continue;
+        if (job->words) job->words[counts[x]] = index;
+        counts[x]++;
+    }
 }
 
 static void job_layers(void *context, u32 begin, u32 end, u32 thread_index) {
@@ -80,17 +100,15 @@ static void job_layers(void *context, u32 begin, u32 end, u32 thread_index) {
     const ListJob *job = context;
     for (u32 i = 0; i < job->shape_count; i++) {
         const ListShape *shape = &job->shapes[i];
-        u32 z_end = MIN(shape->last[2] + 1, end), cell[3];
-        for (cell[2] = MAX(shape->first[2], begin); cell[2] < z_end; cell[2]++)
-            for (cell[1] = shape->first[1]; cell[1] <= shape->last[1]; cell[1]++)
-                for (cell[0] = shape->first[0]; cell[0] <= shape->last[0]; cell[0]++) {
-                    if (!touches(job, shape, cell)) continue;
-                    u32 *count =
-                        &job->counts[cell[0] +
-                                     job->cells[0] * (cell[1] + (u64)job->cells[1] * cell[2])];
-                    if (job->words) job->words[*count] = i;
-                    ++*count;
-                }
+        u32 z_end = MIN(shape->last[2] + 1, end);
+        f32 reach2 = shape->reach * shape->reach;
+        for (u32 z = MAX(shape->first[2], begin); z < z_end; z++) {
+            f32 dz = axis_distance(job, 2, z, shape->tip[2]), left_z = reach2 - dz * dz;
+            for (u32 y = shape->first[1]; y <= shape->last[1]; y++) {
+                f32 dy = axis_distance(job, 1, y, shape->tip[1]), left = left_z - dy * dy;
+                if (left >= 0.0f) list_row(job, shape, i, y, z, sqrtf(left));
+            }
+        }
     }
 }
 
@@ -107,7 +125,7 @@ static u64 count_words(ListJob *job, ListShape *shapes, const GiLightRecord *lig
             for (u32 a = 0; a < 3; a++) shapes[i].first[a] = 1, shapes[i].last[a] = 0;
     }
     memset(job->counts, 0, cell_count * sizeof *job->counts);
-    jobs_for(job->cells[2], 1, job_layers, job);
+    jobs_for(job->cells[2], LAYERS_PER_JOB, job_layers, job);
     u64 words = 2ull * cell_count;
     for (u32 i = 0; i < cell_count; i++) words += job->counts[i];
     return words;
@@ -153,7 +171,7 @@ GiLists gi_lists_make(GiRecord *record, const GiLightRecord *lights, u32 light_c
         cursor += count;
     }
     job.words = lists.words;
-    jobs_for(job.cells[2], 1, job_layers, &job);
+    jobs_for(job.cells[2], LAYERS_PER_JOB, job_layers, &job);
     for (u32 a = 0; a < 3; a++) {
         record->light_grid[a] = job.cells[a];
         record->light_grid_origin[a] = job.origin[a];

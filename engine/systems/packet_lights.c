@@ -354,13 +354,14 @@ static bool is_lit(const LightCull *cull, u32 row) {
     return (r != 0.0f || g != 0.0f || b != 0.0f) && fabsf(r + g + b) < 1e30f;
 }
 
-// The first of the level's, in row order, wherever the view is: none changes as the view turns.
+// The first of the level's, in row order, wherever the view is and lit or not: none changes as the
+// view turns or a light flickers.
 static void mark_traced(LightCull *cull) {
     const LightTable *light = cull->light;
     u32 count = 0, dropped = 0;
     if (!cull->gi->enabled || !cull->gi->cone_shadows) return;
     for (u32 row = 0; row < light->table.count; row++) {
-        if (!wants_tracing(light, row) || !is_lit(cull, row)) continue;
+        if (!wants_tracing(light, row)) continue;
         if (count == GI_TRACED_CAP)
             dropped++;
         else
@@ -423,7 +424,7 @@ static void collect_traced(LightCull *cull, LightParts *parts, Arena *scratch) {
     const LightTable *light = cull->light;
     parts->traced = ARENA_PUSH(scratch, TracedLightRecord, GI_TRACED_CAP);
     for (u32 row = 0; row < light->table.count; row++) {
-        if (!cull->traced[row]) continue;
+        if (!cull->traced[row] || !is_lit(cull, row)) continue;
         bool local = light->kind[row] != LIGHT_DIRECTIONAL;
         f32 weight = local ? cull->decision.weight[row] : 1.0f;
         if (local && (cull->seen[row] != 2 || !(weight > 0.0f))) continue;
