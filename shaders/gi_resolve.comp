@@ -7,12 +7,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant) uniform GiDrawBuffer { GiDrawRecord draw; };
 
-void main() {
-    uint place = gl_GlobalInvocationID.x, layer = draw.how.x & GI_DRAW_DYNAMIC;
-    uint first = layer == 0u ? 0u : gi_counters[GI_COUNTER_STATIC];
-    uint count = gi_counters[layer == 0u ? GI_COUNTER_STATIC : GI_COUNTER_DYNAMIC];
-    uint slot = first + draw.how.y + place;
-    if (place >= GI_WINDOW_SLOTS || draw.how.y + place >= count || slot >= gi_flow.counts.z) return;
+void resolve(uint place, uint slot, uint layer) {
     uint at = place * GI_SUM_WORDS;
     float sums[GI_SUM_WORDS];
     for (uint i = 0u; i < GI_SUM_WORDS; i++) {
@@ -44,4 +39,15 @@ void main() {
     gi_attributes[to + GI_ATTRIBUTE_EMISSION] = gi_pack_emission(emission);
     gi_attributes[to + GI_ATTRIBUTE_FACES_0] = packed_faces.x;
     gi_attributes[to + GI_ATTRIBUTE_FACES_1] = packed_faces.y;
+}
+
+void main() {
+    uint place = gl_GlobalInvocationID.x, layer = draw.how.x & GI_DRAW_DYNAMIC;
+    uint first = layer == 0u ? 0u : gi_counters[GI_COUNTER_STATIC];
+    uint count = gi_counters[layer == 0u ? GI_COUNTER_STATIC : GI_COUNTER_DYNAMIC];
+    uint slot = first + draw.how.y + place;
+    bool is_there = place < GI_WINDOW_SLOTS && draw.how.y + place < count &&
+                    slot < gi_flow.counts.z;
+    // A loop, because that is what the software driver skips.
+    for (uint times = is_there ? 1u : 0u; times > 0u; times--) resolve(place, slot, layer);
 }

@@ -312,7 +312,13 @@ static void add_up(const Layer *layer) {
             .how = {layer->flags | layer->sum_bits << GI_DRAW_BITS_SHIFT, window}};
         memcpy(&record.how[2], &layer->brightest, sizeof layer->brightest);
         if (!bind_step(c, PIPELINE_GI_RESOLVE, 0, &record)) return;
-        dispatch_words(c, MIN(cap - window, GI_WINDOW_SLOTS));
+        // As many as the device counted; of later windows, which are rare, as many as can be.
+        u32 args = layer->flags ? GI_COUNTER_DYNAMIC_ARGS : GI_COUNTER_ALL_ARGS;
+        if (window == 0)
+            gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
+                                      args * sizeof(u32));
+        else
+            dispatch_words(c, MIN(cap - window, GI_WINDOW_SLOTS));
     }
 }
 
