@@ -344,7 +344,7 @@ static const Packet *make_voxels(SystemsFixture *f, u32 count) {
     fixture_fill(f, 0xF17A, count);
     LightTable *light = FIXTURE_TABLE(f, Light, light);
     for (u32 row = 0; row < light->table.count; row++)
-        light->screen_shadow[row] = row % 3, light->voxel_shadow[row] = row % 5;
+        light->screen_shadow[row] = row < 12 ? 0 : row % 3, light->voxel_shadow[row] = row % 5;
     f->world->tick = 99;
     systems_settle(&f->systems, &f->context);
     RenderSettings settings = settings_default();
