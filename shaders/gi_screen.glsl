@@ -6,9 +6,9 @@
 #include "gbuffer.glsl"
 #include "gi.glsl"
 #include "gi_cones.glsl"
+#include "gi_irradiance_lookup.glsl"
 #include "gi_probe_lookup.glsl"
 
-layout(set = 2, binding = BINDING_GI_IRRADIANCE) uniform sampler3D gi_irradiance;
 
 struct GiPixel {
     vec4 diffuse;  // rgb without albedo, w ambient visibility
@@ -42,19 +42,21 @@ float gi_specular_tan(Surface s) {
     return max(sqrt(max(1.0 - cosine2, 0.0) / cosine2), gi.specular.x);
 }
 
-// Where cones start: offset voxels off the surface.
+// Where cones start: offset voxels off the surface; a voxel counts as thick as it is along the
+// normal, so that all voxels that a plane passes through are as far behind the start.
 vec3 gi_start(GbufferPixel g) {
-    return g.position + g.normal * (gi.cone.w * gi_voxel_at(g.position));
+    float thickness = dot(abs(g.normal), vec3(1.0));
+    return g.position + g.normal * (gi.cone.w * gi_voxel_at(g.position) * thickness);
 }
 
-// Length of a cone's first sample, in voxels. Dithered: up to one more step, by a fixed pattern of
-// 4 x 4 (Bayer 1973), so that samples of neighbouring pixels lie at different lengths.
+// Length of a cone's first sample, in voxels. Dithered: up to half a step less or more, by a fixed
+// pattern of 4 x 4 (Bayer 1973), so that samples of neighbouring pixels lie at different lengths.
 float gi_first(uvec2 pixel) {
     if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u) return GI_START;
     uint x = pixel.x ^ pixel.y, y = pixel.y;
     uint rank = (x & 1u) << 3 | (y & 1u) << 2 | (x & 2u) | (y & 2u) >> 1;
     float step = max(2.0 * gi_flow.cone.x * GI_START, 1.0) * gi_flow.cone.y;
-    return GI_START + step * (float(rank) + 0.5) * (1.0 / 16.0);
+    return GI_START + step * ((float(rank) + 0.5) * (1.0 / 16.0) - 0.5);
 }
 
 // is_on: false traces nothing (loops of no rounds: a branch would not save the work).
@@ -75,6 +77,7 @@ GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, bool is_on) {
         if ((GI_FEATURES & GI_FEATURE_AO) != 0u)
             result.diffuse.a = mix(gi.strength.z, 1.0, sum.visibility);
     }
+    if (GI_DIFFUSE == 3u) result.diffuse.rgb = gi_irradiance_light(g.position, g.normal);
     if (gi_has_specular()) {
         vec3 color = gi_specular_color(s);
         bool shines = is_on && max(max(color.r, color.g), color.b) > 0.0;

@@ -5,7 +5,8 @@
 // Does not: make voxels or filter them.
 //
 // Paths that shade where they draw have no G-buffer: gi_gbuffer_pass draws one (layout_of: lean) of
-// one sample a pixel. With several samples, what a pixel's middle shows is added to all of them.
+// one sample a pixel. With several samples, all of a pixel's get the same light: that of its
+// middle, or at edges the mean of what they show.
 #include "passes.h"
 
 static void gi_gbuffer_record(const PassContext *c) { gbuffer_pass.record(c); }
@@ -16,10 +17,14 @@ const Pass gi_gbuffer_pass = {"gi gbuffer",
                               gi_gbuffer_record,
                               gi_is_on};
 
+// Over every surface; the sky is passed over.
 static void draw_over(const PassContext *c, PipelineKind kind) {
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
     if (!pipeline.id) return;
-    begin(c, &(GpuRendering){.targets = {color_target(c, false)}, .target_count = 1});
+    begin(c, &(GpuRendering){.targets = {color_target(c, false)},
+                             .target_count = 1,
+                             .depth = depth_target(c, false),
+                             .depth_read_only = true});
     gi_bind_screen(c, pipeline);
     gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
     gpu_cmd_end_rendering(c->cmd);
@@ -30,14 +35,14 @@ static bool traced_needed(const PassContext *c) {
     return gi_is_on(c) && c->packet->traced_lights.count > 0;
 }
 static void traced_record(const PassContext *c) { draw_over(c, PIPELINE_GI_TRACED_LIGHTS); }
-const Pass gi_traced_pass = {"gi traced lights",
-                             {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET),
-                              USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
-                              USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
-                              USE(GI_VISIBILITY, SAMPLED_FRAGMENT)},
-                             11,
-                             traced_record,
-                             traced_needed};
+const Pass gi_traced_pass = {
+    "gi traced lights",
+    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
+     USE(DEPTH, DEPTH_TEST), USE(DEPTH_MS, DEPTH_TEST), USE(GI_BASE, SAMPLED_FRAGMENT),
+     USE(GI_ATLAS, SAMPLED_FRAGMENT), USE(GI_VISIBILITY, SAMPLED_FRAGMENT)},
+    12,
+    traced_record,
+    traced_needed};
 
 static void trace_record(const PassContext *c) {
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_TRACE, PIPELINE_PLAIN);
@@ -56,14 +61,16 @@ const Pass gi_trace_pass = {"gi trace",
                             trace_record,
                             gi_is_on};
 
-static void compose_record(const PassContext *c) { draw_over(c, PIPELINE_GI_COMPOSE); }
-const Pass gi_compose_pass = {"gi compose",
-                              {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET),
-                               USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
-                               USE(GI_TRACE_0, SAMPLED_FRAGMENT), USE(GI_TRACE_1, SAMPLED_FRAGMENT),
-                               USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
-                               USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
-                               USE(GI_PROBES, SAMPLED_FRAGMENT)},
-                              14,
-                              compose_record,
-                              gi_is_on};
+static void compose_record(const PassContext *c) {
+    draw_over(c, c->renderer->samples > 1 ? PIPELINE_GI_COMPOSE_MS : PIPELINE_GI_COMPOSE);
+}
+const Pass gi_compose_pass = {
+    "gi compose",
+    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
+     USE(DEPTH, DEPTH_TEST), USE(DEPTH_MS, DEPTH_TEST), USE(GI_TRACE_0, SAMPLED_FRAGMENT),
+     USE(GI_TRACE_1, SAMPLED_FRAGMENT), USE(GI_BASE, SAMPLED_FRAGMENT),
+     USE(GI_ATLAS, SAMPLED_FRAGMENT), USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
+     USE(GI_PROBES, SAMPLED_FRAGMENT)},
+    15,
+    compose_record,
+    gi_is_on};

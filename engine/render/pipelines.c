@@ -40,8 +40,7 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
      SPEC_BIT(SPEC_ATTENUATION_LOOKUP) | SPEC_BIT(SPEC_LIGHT_BRANCH) | SPEC_READ_GBUFFER)
 
 // What a pass needs that makes voxels of triangles.
-#define SPEC_VOXELISE                                                                              \
-    (SPEC_BIT(SPEC_GI_STEP) | SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES))
+#define SPEC_VOXELISE (SPEC_BIT(SPEC_GI_STEP) | SPEC_BIT(SPEC_ALPHA_MASK) | SPEC_BIT(SPEC_TEXTURES))
 // What a pass needs that writes or reads filtered light.
 #define SPEC_GI_IMAGES                                                                             \
     (SPEC_BIT(SPEC_GI_DIRECTIONS) | SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
@@ -422,11 +421,13 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                 .compute = "gi_irradiance.comp",
                                 .spec_mask = SPEC_GI_IMAGES},
     [PIPELINE_GI_TRACED_LIGHTS] = {.label = "gi traced lights",
-                                   .vertex = "fullscreen.vert",
+                                   .vertex = "surfaces.vert",
                                    .fragment = "gi_traced_lights.frag",
                                    .targets = {RESOURCE_HDR},
                                    .target_count = 1,
                                    .may_be_ms = true,
+                                   .has_depth = true,
+                                   .depth = GPU_DEPTH_BEHIND,
                                    .cull = GPU_CULL_NONE,
                                    .blend = GPU_BLEND_ADD,
                                    .spec_mask = SPEC_ONE_LIGHT | SPEC_READ_VOXELS |
@@ -434,15 +435,16 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_GI_TRACE] = {.label = "gi trace",
                            .compute = "gi_trace.comp",
                            .spec_mask = SPEC_READ_VOXELS},
-    [PIPELINE_GI_COMPOSE] = {.label = "gi compose",
-                             .vertex = "fullscreen.vert",
-                             .fragment = "gi_compose.frag",
-                             .targets = {RESOURCE_HDR},
-                             .target_count = 1,
-                             .may_be_ms = true,
-                             .cull = GPU_CULL_NONE,
-                             .blend = GPU_BLEND_SCALE_ADD,
-                             .spec_mask = SPEC_READ_VOXELS | SPEC_BIT(SPEC_SAMPLES)},
+#define GI_COMPOSE(label_, fragment_)                                                              \
+    {                                                                                              \
+        .label = label_, .vertex = "surfaces.vert", .fragment = fragment_,                         \
+        .targets = {RESOURCE_HDR}, .target_count = 1, .may_be_ms = true, .has_depth = true,        \
+        .depth = GPU_DEPTH_BEHIND, .cull = GPU_CULL_NONE, .blend = GPU_BLEND_SCALE_ADD,            \
+        .spec_mask = SPEC_READ_VOXELS                                                              \
+    }
+    [PIPELINE_GI_COMPOSE] = GI_COMPOSE("gi compose", "gi_compose.frag"),
+    [PIPELINE_GI_COMPOSE_MS] = GI_COMPOSE("gi compose of samples", "gi_compose_ms.frag"),
+#undef GI_COMPOSE
     [PIPELINE_GI_VIEW_VOXELS] = {.label = "gi view voxels",
                                  .vertex = "fullscreen.vert",
                                  .fragment = "gi_view_voxels.frag",

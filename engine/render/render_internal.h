@@ -160,6 +160,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_TRACED_LIGHTS, // from here on: passes over the screen
     PIPELINE_GI_TRACE,
     PIPELINE_GI_COMPOSE,
+    PIPELINE_GI_COMPOSE_MS, // of several samples a pixel
     PIPELINE_GI_VIEW_VOXELS,
     PIPELINE_GI_VIEW_PROBES,
     PIPELINE_GI_VIEW_TRACE, // views of what was traced

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 160, HEIGHT = 90 };
+enum { WIDTH = 128, HEIGHT = 72 };
 #define GI "gi.enabled=on,gi.grid=32"
 
 static RenderImage draw(Studio *studio, const char *list, u32 width, u32 height) {
@@ -69,10 +69,10 @@ static void check_ways(const char *level, u32 ticks, u32 width, u32 height, cons
 
 TEST_GPU(golden, gi_paths_agree) { check_ways("data/levels/cornell.toml", 30, WIDTH, HEIGHT, ""); }
 TEST_GPU(golden, gi_paths_agree_at_half_resolution) {
-    check_ways("data/levels/cornell.toml", 30, 97, 53, ",gi.resolution=half");
+    check_ways("data/levels/cornell.toml", 30, 67, 41, ",gi.resolution=half");
 }
 TEST_GPU(golden, gi_paths_agree_in_the_cloister) {
-    check_ways("data/levels/cloister.toml", 90, WIDTH, HEIGHT, ",gi.resolution=quarter");
+    check_ways("data/levels/cloister.toml", 90, 80, 45, ",gi.resolution=quarter");
 }
 
 // --- Every layout: those that lose nothing agree, the others stay near ---
@@ -133,7 +133,7 @@ TEST_GPU(golden, gi_with_samples) {
                         contrast = MAX(contrast, (u32)(high - low));
                     }
                     outside += most > 6;
-                    inside += most > 2 && contrast < 8;
+                    inside += most > 4 && contrast < 8;
                 }
             printf("%s: %u pixels beyond their neighbours, %u of them inside\n", four, outside,
                    inside);
@@ -149,7 +149,7 @@ static void check_resolutions(const char *level, u32 ticks, f64 half_ssim, f64 q
     Studio studio;
     studio_open(&studio, level);
     session_advance(&studio.session, ticks);
-    RenderImage full = draw(&studio, "tiled_deferred," GI, 320, 180);
+    RenderImage full = draw(&studio, "tiled_deferred," GI, 192, 108);
     static const char *const words[] = {"half", "quarter"};
     const f64 least[] = {half_ssim, quarter_ssim};
     for (u32 i = 0; i < 2; i++)
@@ -157,16 +157,18 @@ static void check_resolutions(const char *level, u32 ticks, f64 half_ssim, f64 q
             char list[160];
             snprintf(list, sizeof list, "tiled_deferred,%s,gi.resolution=%s,gi.dither=%s", GI,
                      words[i], dither ? "on" : "off");
-            RenderImage image = draw(&studio, list, 320, 180);
+            RenderImage image = draw(&studio, list, 192, 108);
             ImageDifference d = difference(&studio, full, image);
             printf("%s: %s%s: SSIM %.4f, mean %.3f, max %u\n", level, words[i],
                    dither ? ", dithered" : "", d.ssim, d.mean, d.max);
-            if (d.ssim < least[i])
-                fail_msg("%s: %s: SSIM %.4f, should be %.4f", level, words[i], d.ssim, least[i]);
+            // What is dithered is compared with what is not.
+            f64 bound = dither ? least[i] - 0.02 : least[i];
+            if (d.ssim < bound)
+                fail_msg("%s: %s: SSIM %.4f, should be %.4f", level, words[i], d.ssim, bound);
         }
     studio_close(&studio);
 }
-TEST_GPU(golden, gi_resolutions) { check_resolutions("data/levels/cornell.toml", 30, 0.985, 0.97); }
+TEST_GPU(golden, gi_resolutions) { check_resolutions("data/levels/cornell.toml", 30, 0.998, 0.99); }
 TEST_GPU(golden, gi_resolutions_in_the_cloister) {
     check_resolutions("data/levels/cloister.toml", 90, 0.97, 0.95);
 }
