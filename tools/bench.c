@@ -2,7 +2,7 @@
 // Data in: row ids. Data out: tables on stdout, CSV, JSON, charts. Rows: bench_cpu.c, bench_gpu.c
 // and the experiments (bench.h says where).
 // Does not: compare with another day's numbers; the CSV is for that.
-#include "bench.h"
+#include "bench_gi.h"
 #include "../engine/base/file.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -28,6 +28,16 @@ static const BenchRow rows[] = {
     {"K1", "number of lights and resolution: deferred", bench_k1, BENCH_EXPERIMENT},
     {"K2", "side of a tile, range of depths: tiled paths", bench_k2, BENCH_EXPERIMENT},
     {"K3", "all paths against the number of lights", bench_k3, BENCH_EXPERIMENT},
+    {"gi", "what global illumination promises: presets, updates", bench_gi_claims,
+     BENCH_EXPERIMENT},
+    {"V1", "global illumination: each step, by scene", bench_gi_v1, BENCH_EXPERIMENT},
+    {"V2", "global illumination: size of the grid", bench_gi_v2, BENCH_EXPERIMENT},
+    {"V3", "cones: resolution and step factor", bench_gi_v3, BENCH_EXPERIMENT},
+    {"V4", "shading of voxels: number of lights, rays", bench_gi_v4, BENCH_EXPERIMENT},
+    {"V5", "shadows from voxels: time and error", bench_gi_v5, BENCH_EXPERIMENT},
+    {"V6", "size of the grid and step factor: error", bench_gi_v6, BENCH_EXPERIMENT},
+    {"V7", "memory by size of the grid", bench_gi_v7, BENCH_EXPERIMENT},
+    {"V8", "features one by one: error to a path-traced picture", bench_gi_v8, BENCH_EXPERIMENT},
 };
 
 void bench_add(Bench *bench, const char *id, const char *what, Samples *samples, const char *unit,
@@ -134,7 +144,8 @@ static int bench_run(int argc, char **argv) {
         {"quick", 0, OPTION_FLAG, &bench.quick, NULL, "fewer rounds: a look, not a measurement"},
         {"level", 0, OPTION_TEXT, &bench.level, "LEVEL",
          "instead of a row's own, which is " BENCH_LEVEL "\nor " BENCH_LEVEL_HALL},
-        {"scene", 0, OPTION_TEXT, &bench.scene, "FILE", "a level or model for row atrium"},
+        {"scene", 0, OPTION_TEXT, &bench.scene, "FILE",
+         "a level or model: row atrium, rows V1 to V4, V7"},
         {"csv", 0, OPTION_TEXT, &csv, "FILE", "all medians as CSV"},
         {"plots", 0, OPTION_TEXT, &bench.plots, "DIR",
          "a chart and a CSV table of each experiment"},

@@ -159,7 +159,16 @@ u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap) {
     return count;
 }
 
-RendererStats renderer_stats(const Renderer *renderer) { return renderer->stats; }
+RendererStats renderer_stats(const Renderer *renderer) {
+    RendererStats stats = renderer->stats;
+    if (!renderer->gi.is_on) return stats;
+    const u32 *counters = renderer->gi_reports.counters;
+    stats.gi_dynamic_voxels = counters[GI_COUNTER_DYNAMIC];
+    stats.gi_voxels = counters[GI_COUNTER_STATIC] + counters[GI_COUNTER_DYNAMIC];
+    stats.gi_lost_voxels = counters[GI_COUNTER_LOST];
+    stats.gi_bytes = gi_memory(renderer);
+    return stats;
+}
 
 // --- Warm-up: shaders compile when they first run (up to 150 ms each on the software driver) ---
 
