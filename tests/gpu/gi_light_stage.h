@@ -47,8 +47,5 @@ typedef struct LightSum {
     f32 visibility;
 } LightSum;
 LightSum light_twin(const VoxelScene *stage, u32 slot);
-// Share of light that gets from a point through the voxels: the ray against each full voxel's box.
-f32 light_twin_ray(const VoxelScene *stage, const f32 start[3], u32 cascade, const f32 l[3],
-                   f32 reach, bool soft);
 f32 half_to_float(u16 half);
 #endif
