@@ -11,13 +11,22 @@
 // The software driver sets the shape: only the exit of a loop saves work, and the reads are most of
 // the work. So a cone through one cascade is three loops that read ever coarser: where it is
 // narrower than a voxel the base alone (1 read), up to two voxels base and the finest level of the
-// atlas (4 reads of one level each), from there on the atlas (3 reads of two levels). What does not
+// atlas (4 reads of one level each), from there on the atlas (3 reads of two levels, or of one where
+// the lod is whole: see gi_cone_growth). What does not
 // change along a cone is made before, and all that steers a loop comes from gi_flow.
+//
+// With faces apart walls hold light back: texels of a quarter of the cone's width, so that what is
+// blended lies within the cone, read as often as there are such texels; and as dense as the surface
+// is: of a wall that a cone meets at an angle only some axes' blocks know, so a sample counts
+// GI_DENSER times, up to opaque.
 #ifndef GI_CONES_GLSL
 #define GI_CONES_GLSL
 
 const float GI_START = 1.0;  // voxels from the apex to the first sample
-const float GI_OPAQUE = 0.98; // as good as 1
+const float GI_OPAQUE = 0.95; // as good as 1
+const float GI_FINER = GI_FACES != 0u ? 2.0 : 0.0;  // levels
+const float GI_CLOSER = GI_FACES != 0u ? 0.5 : 1.0; // on the step factor
+const float GI_DENSER = 4.0;
 
 struct GiCone {
     vec4 light;      // rgb premultiplied radiance, a opacity
@@ -48,7 +57,11 @@ float gi_exit(vec3 start, vec3 direction) {
     return enter < leave && enter <= 0.0 ? leave : 0.0;
 }
 
+// Lod of a sample of this diameter (voxels, at least 1).
+float gi_cone_lod(float diameter) { return max(log2(diameter) - GI_FINER, 0.0); }
+
 void gi_cone_add(inout GiCone cone, vec4 s, float falloff) {
+    if (GI_FACES != 0u) s *= min(GI_DENSER, 1.0 / max(s.a, 1e-3));
     float seen = 1.0 - cone.light.a;
     cone.light += s * seen;
     cone.occlusion += s.a * seen * falloff;
@@ -74,29 +87,50 @@ vec4 gi_cone_atlas(vec3 q, float level, GiAxes axes) {
            gi_atlas_fetch(vec3(x.z, q.yz), level) * axes.weight.z;
 }
 
+// Factor from one length of a cone to the next. Rounded, if that changes it by little, so that the
+// lods of samples rise by sixths and are whole every so often: a whole one is read from one level.
+float gi_cone_growth(float step) {
+    float rise = log2(1.0 + step), sixths = floor(rise * 6.0 + 0.5) * (1.0 / 6.0);
+    return exp2(abs(sixths - rise) < 0.04 * rise ? sixths : rise);
+}
+// Length in voxels of a wide cone's first sample, as a share of GI_START: where it is a voxel wide.
+float gi_cone_first(float tan_half) { return clamp(0.5 / tan_half, 0.75, 1.25); }
+
 GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float end) {
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
-    float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half, factor = gi_flow.cone.y;
+    float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half;
+    float factor = gi_flow.cone.y * GI_CLOSER;
     float lambda = gi_flow.strength.y * voxel, last_level = float(gi.atlas.w) - 1.0;
     vec3 per_voxel = 1.0 / vec3(gi.dims.xyz);
     vec3 q = gi_to_voxels(start, 0u) * per_voxel, dq = direction * per_voxel;
     if (GI_FACES == 0u) {
-        float narrow_end = min(end, 1.0 / width), near_end = min(end, 2.0 / width);
-        for (; t < narrow_end && cone.light.a < GI_OPAQUE; t += factor)
+        float growth = gi_cone_growth(width * factor), rise = log2(growth);
+        float narrow_end = min(end, 1.001 / width), near_end = min(end, 1.999 / width);
+        for (; t < narrow_end && cone.light.a < GI_OPAQUE;) {
             gi_cone_add(cone, textureLod(gi_base, q + dq * t, 0.0), 1.0 / (1.0 + lambda * t));
-        for (; t < near_end && cone.light.a < GI_OPAQUE;) {
+            t = width * t > 0.999 ? t * growth : t + factor;
+        }
+        for (; t < near_end && cone.light.a < GI_OPAQUE; t *= growth) {
             vec3 at = q + dq * t;
-            float diameter = max(width * t, 1.0), share = log2(diameter);
+            float share = log2(max(width * t, 1.0));
             if (GI_NEAREST_MIPS != 0u) share = floor(share + 0.5);
             vec4 s = mix(textureLod(gi_base, at, 0.0), gi_cone_atlas(at, 0.0, axes), share);
             gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
-            t += diameter * factor;
         }
+        for (float lod = log2(width * t) - 1.0; t < end && cone.light.a < GI_OPAQUE; lod += rise) {
+            float whole = floor(lod + 0.5);
+            bool is_whole = GI_NEAREST_MIPS != 0u || abs(lod - whole) < 0.01;
+            float level = min(is_whole ? whole : lod, last_level);
+            gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
+            t *= growth;
+        }
+        gi_cone_end(cone);
+        return cone;
     }
     while (t < end && cone.light.a < GI_OPAQUE) {
         float diameter = max(width * t, 1.0);
-        float level = min(log2(diameter) - gi_atlas_lod(), last_level);
+        float level = min(gi_cone_lod(diameter) - gi_atlas_lod(), last_level);
         if (GI_NEAREST_MIPS != 0u) level = floor(level + 0.5);
         gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
         t += diameter * factor;
@@ -110,12 +144,14 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
 GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, float end) {
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
-    float width = 2.0 * tan_half, factor = gi_flow.cone.y, lambda = gi_flow.strength.y;
+    float width = 2.0 * tan_half, factor = gi_flow.cone.y * GI_CLOSER;
+    float lambda = gi_flow.strength.y;
     while (t < end && cone.light.a < GI_OPAQUE) {
         vec3 at = start + direction * t;
         uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
         float voxel = gi_flow.origin[cascade].w, diameter = max(width * t, voxel);
-        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, log2(diameter / voxel), axes);
+        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
+                           axes);
         gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
         t += diameter * factor;
     }
@@ -159,6 +195,7 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, float first, float reach, ui
     vec3 v = cross(normal, u);
     vec2 turn = vec2(1.0, 0.0);
     float tan_half = gi_flow.cone.x;
+    if (GI_FACES == 0u) first *= gi_cone_first(tan_half);
     for (uint i = 0u; i < count; i++) {
         bool is_first = i == 0u;
         vec3 around = u * turn.x + v * turn.y;

@@ -133,7 +133,7 @@ static Result twin(const Volumes *v, const Cone *cone) {
         f32 at = (cone->start[a] - origin[a]) / voxel;
         if (at < 0.0f || at > SIDE) return r;
     }
-    for (f32 t = cone->first; t * voxel < cone->reach && r.light[3] < 0.98f;) {
+    for (f32 t = cone->first; t * voxel < cone->reach && r.light[3] < 0.95f;) {
         f32 p[3];
         bool inside = true;
         for (u32 a = 0; a < 3; a++) {
@@ -143,14 +143,26 @@ static Result twin(const Volumes *v, const Cone *cone) {
         if (!inside) break;
         f32 diameter = 2.0f * cone->tan_half * t, texel[4];
         diameter = MAX(diameter, 1.0f);
-        read_volumes(v, log2f(diameter), p, cone->direction, texel);
+        // With faces apart: finer texels, oftener, that count denser (see gi_cones.glsl).
+        f32 lod = log2f(diameter) - (v->faces ? 2.0f : 0.0f), factor = v->gi.cone[1];
+        read_volumes(v, MAX(lod, 0.0f), p, cone->direction, texel);
+        if (v->faces) {
+            factor *= 0.5f;
+            f32 denser = MIN(4.0f, 1.0f / MAX(texel[3], 1e-3f));
+            for (u32 c = 0; c < 4; c++) texel[c] *= denser;
+        }
         f32 seen = 1.0f - r.light[3];
         for (u32 c = 0; c < 4; c++) r.light[c] += texel[c] * seen;
         r.occlusion += texel[3] * seen / (1.0f + v->gi.strength[1] * t * voxel);
         r.steps += 1.0f;
-        t += diameter * v->gi.cone[1];
+        // Where a cone is wider than a voxel, steps are rounded to what makes lods rise by sixths.
+        f32 step = 2.0f * cone->tan_half * factor, rise = log2f(1.0f + step);
+        f32 sixths = floorf(rise * 6.0f + 0.5f) / 6.0f;
+        bool rounds = !v->faces && fabsf(sixths - rise) < 0.04f * rise;
+        t = rounds && 2.0f * cone->tan_half * t > 0.999f ? t * exp2f(sixths)
+                                                         : t + diameter * factor;
     }
-    if (r.light[3] > 0.98f) {
+    if (r.light[3] > 0.95f) {
         f32 whole = 1.0f / r.light[3];
         for (u32 c = 0; c < 4; c++) r.light[c] *= whole;
     }
