@@ -39,10 +39,21 @@ struct GiCone {
     (mix((frame).sky_horizon.rgb, (frame).sky_zenith.rgb, sqrt(clamp((direction).y, 0.0, 1.0))) *  \
      gi.scale.y)
 
-// Voxel of the finest cascade that has room at a place, m.
+// The width that a sample has at least, m: a voxel of its cascade, and towards the border of one
+// that others lie around growing to a voxel of the next: what is read on both sides of the border is
+// then blurred alike.
+float gi_grain(vec3 world, uint cascade) {
+    float voxel = gi_flow.origin[cascade].w;
+    if (GI_CASCADES == 1u || cascade + 1u >= GI_CASCADES) return voxel;
+    vec3 middle = 0.5 * vec3(gi.dims.xyz) * voxel;
+    vec3 from = abs(world - gi.origin[cascade].xyz - middle) / middle; // 1 at the border
+    return voxel * (1.0 + clamp(max(max(from.x, from.y), from.z) * 3.0 - 1.6, 0.0, 1.0));
+}
+
+// That of the finest cascade which has room at a place.
 float gi_voxel_at(vec3 world) {
     if (GI_CASCADES == 1u) return gi_flow.origin[0].w;
-    return gi_flow.origin[min(gi_cascade(world, gi_flow.origin[0].w), GI_CASCADES - 1u)].w;
+    return gi_grain(world, min(gi_cascade(world, gi_flow.origin[0].w), GI_CASCADES - 1u));
 }
 
 // Length in m at which a ray leaves the box of the coarsest cascade; not positive if it misses it.
@@ -149,7 +160,8 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
     while (t < end && cone.light.a < GI_OPAQUE) {
         vec3 at = start + direction * t;
         uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
-        float voxel = gi_flow.origin[cascade].w, diameter = max(width * t, voxel);
+        float voxel = gi_flow.origin[cascade].w;
+        float diameter = max(width * t, gi_grain(at, cascade));
         vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
                            axes);
         gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
