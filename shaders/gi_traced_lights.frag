@@ -25,7 +25,8 @@ void main() {
     GbufferPixel g = gbuffer_read(pixel);
     Surface s = gbuffer_surface(g);
     vec3 start = gi_start(g);
-    float first = gi_first(uvec2(pixel));
+    // As rays (specification of voxel GI, 4) two voxels out: in a corner the other wall is near.
+    float first = gi_first(uvec2(pixel)) + 1.0;
     float by_volume = (GI_TRACED & TRACED_BY_VOLUME) != 0u ? volume_visibility(g) : 1.0;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < gi_flow.counts.x; i++) {
