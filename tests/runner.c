@@ -315,7 +315,7 @@ int main(int argc, char **argv) {
         else if (strcmp(argv[i], "--no-fork") == 0)
             do_fork = false;
         else if (strcmp(argv[i], "--jobs") == 0 && i + 1 < argc && atoi(argv[i + 1]) > 0)
-            jobs = (u32)CLAMP(atoi(argv[++i]), 1, JOBS_CAP);
+            i++, jobs = (u32)CLAMP(atoi(argv[i]), 1, JOBS_CAP);
         else if (strcmp(argv[i], "--verbose") == 0)
             verbose = true;
         else if (argv[i][0] == '-') {
