@@ -15,18 +15,18 @@
 // the lod is whole: see gi_cone_growth). What does not
 // change along a cone is made before, and all that steers a loop comes from gi_flow.
 //
-// With faces apart walls hold light back: texels of a quarter of the cone's width, so that what is
-// blended lies within the cone, read as often as there are such texels; and as dense as the surface
-// is: of a wall that a cone meets at an angle only some axes' blocks know, so a sample counts
-// GI_DENSER times, up to opaque.
+// With faces apart walls hold light back. What is blended must lie within the cone: texels a third of
+// its width (linear filtering reaches 1.5 of them to each side), read as often as there are such
+// texels. And surfaces must be opaque: of a wall that a cone meets at an angle the blocks of some
+// axes alone know, so a sample counts GI_DENSER times, up to opaque.
 #ifndef GI_CONES_GLSL
 #define GI_CONES_GLSL
 
 const float GI_START = 1.0;  // voxels from the apex to the first sample
 const float GI_OPAQUE = 0.95; // as good as 1
-const float GI_FINER = GI_FACES != 0u ? 2.0 : 0.0;  // levels
-const float GI_CLOSER = GI_FACES != 0u ? 0.5 : 1.0; // on the step factor
-const float GI_DENSER = 4.0;
+const float GI_FINER = GI_FACES != 0u ? 1.584962501 : 0.0; // levels: log2(3)
+const float GI_CLOSER = GI_FACES != 0u ? 2.0 / 3.0 : 1.0;  // on the step factor
+const float GI_DENSER = 3.0;
 
 struct GiCone {
     vec4 light;      // rgb premultiplied radiance, a opacity

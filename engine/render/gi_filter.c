@@ -37,7 +37,8 @@ const Pass gi_fresh_pass = {
 
 enum { STEP_FORGET, STEP_SCATTER, STEP_PARENTS };
 
-// Level of the atlas that STEP_PARENTS writes.
+// Level of the atlas that STEP_PARENTS writes; what is before it is the voxels' own: the base
+// volume, which gi_light.c writes, or level 0 by STEP_SCATTER.
 static u32 parent_level(const PassContext *c) {
     return c->packet->gi.params.faces == GI_FACES_APART ? 1 : 0;
 }
@@ -62,7 +63,7 @@ static void levels_record(const PassContext *c) {
     const GiRecord *record = &c->packet->gi.record;
     u32 blocks = c->packet->gi.params.filter == GI_FILTER_ISOTROPIC ? 1 : 6;
     u32 cascades = record->dims[3], first = parent_level(c);
-    by_slot(c, STEP_SCATTER, 0);
+    if (first > 0) by_slot(c, STEP_SCATTER, 0);
     by_slot(c, STEP_PARENTS, first);
     GpuPipeline mip = pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_MIP, PIPELINE_PLAIN);
     for (u32 level = first + 1; level < record->atlas[3]; level++) {
@@ -90,6 +91,7 @@ static void filter_record(const PassContext *c) {
             USE(GI_COUNTERS, INDIRECT)                                                             \
     }
 const Pass gi_filter_pass = {"voxel filter", FILTER_USES, 7, filter_record, is_relit};
+
 static void refilter_record(const PassContext *c) {
     if (gi_feeds_back(c))
         filter_record(c);

@@ -144,11 +144,11 @@ static Result twin(const Volumes *v, const Cone *cone) {
         f32 diameter = 2.0f * cone->tan_half * t, texel[4];
         diameter = MAX(diameter, 1.0f);
         // With faces apart: finer texels, oftener, that count denser (see gi_cones.glsl).
-        f32 lod = log2f(diameter) - (v->faces ? 2.0f : 0.0f), factor = v->gi.cone[1];
+        f32 lod = log2f(diameter) - (v->faces ? log2f(3.0f) : 0.0f), factor = v->gi.cone[1];
         read_volumes(v, MAX(lod, 0.0f), p, cone->direction, texel);
         if (v->faces) {
-            factor *= 0.5f;
-            f32 denser = MIN(4.0f, 1.0f / MAX(texel[3], 1e-3f));
+            factor *= 2.0f / 3.0f;
+            f32 denser = MIN(3.0f, 1.0f / MAX(texel[3], 1e-3f));
             for (u32 c = 0; c < 4; c++) texel[c] *= denser;
         }
         f32 seen = 1.0f - r.light[3];
