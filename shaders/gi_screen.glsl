@@ -49,14 +49,14 @@ vec3 gi_start(GbufferPixel g) {
     return g.position + g.normal * (gi.cone.w * gi_voxel_at(g.position) * thickness);
 }
 
-// Length of a cone's first sample, in voxels. Dithered: up to half a step less or more, by a fixed
+// Length of a cone's first sample, in voxels. Dithered: up to a quarter of a step off, by a fixed
 // pattern of 4 x 4 (Bayer 1973), so that samples of neighbouring pixels lie at different lengths.
 float gi_first(uvec2 pixel) {
     if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u) return GI_START;
     uint x = pixel.x ^ pixel.y, y = pixel.y;
     uint rank = (x & 1u) << 3 | (y & 1u) << 2 | (x & 2u) | (y & 2u) >> 1;
     float step = max(2.0 * gi_flow.cone.x * GI_START, 1.0) * gi_flow.cone.y;
-    return GI_START + step * ((float(rank) + 0.5) * (1.0 / 16.0) - 0.5);
+    return GI_START + step * ((float(rank) + 0.5) * (1.0 / 32.0) - 0.25);
 }
 
 // is_on: false traces nothing (loops of no rounds: a branch would not save the work).
