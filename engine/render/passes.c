@@ -190,7 +190,9 @@ void pass_run(const PassContext *c, const Pass *pass) {
         GpuUsage from = r->usage[use->resource];
         if (!gpu_usage_needs_barrier(from, use->usage)) continue;
         bool is_buffer = use->resource >= RESOURCE_FIRST_BUFFER;
-        if (!is_buffer && !r->targets[use->resource].id) continue; // the layout lacks it
+        // What the layout lacks, and global illumination that is off.
+        if (is_buffer ? !r->device_buffers[use->resource].id : !r->targets[use->resource].id)
+            continue;
         barriers[barrier_count++] = (GpuBarrier){.texture = r->targets[use->resource],
                                                  .buffer = r->device_buffers[use->resource],
                                                  .from = from,
