@@ -9,8 +9,8 @@
 const SettingPreset setting_presets[] = {
     {"lavapipe",
      "gi.grid=64,gi.cascades=1,gi.format=half,gi.solid=off,gi.cosine=weighted,gi.faces=shared,"
-     "gi.filter=directional,gi.bounces=2,gi.feedback=off,gi.diffuse=probes,gi.specular=on,"
-     "gi.ao=on,gi.resolution=half,gi.dither=off,gi.mips=nearest,gi.share=4,gi.step_factor=0.5,"
+     "gi.filter=directional,gi.bounces=2,gi.feedback=off,gi.diffuse=probes,gi.specular=off,"
+     "gi.ao=on,gi.resolution=quarter,gi.dither=off,gi.mips=nearest,gi.share=4,gi.step_factor=0.5,"
      "gi.diffuse_aperture=60",
      "a CPU that draws"},
     {"balanced",
