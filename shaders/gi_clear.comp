@@ -24,7 +24,8 @@ void main() {
         if (place >= gi_counters[GI_COUNTER_DYNAMIC] || slot >= gi_flow.counts.z) return;
         ivec3 at = ivec3(gi_unpack_place(gi_voxels[slot]));
         if (is_whole(imageSize(irradiance_image))) imageStore(irradiance_image, at, vec4(0.0));
-        if (is_whole(imageSize(visibility_image))) imageStore(visibility_image, at, vec4(0.0));
+        // Nothing is in the way of what is not voxelised.
+        if (is_whole(imageSize(visibility_image))) imageStore(visibility_image, at, vec4(1.0));
     } else {
         uvec4 dims = gi_flow.dims;
         uint words = (dims.x * dims.y * dims.z * dims.w) >> 5;

@@ -27,6 +27,9 @@ layout(std140, set = 0, binding = BUILD_DIRECTIONALS) uniform GiDirectionalBuffe
 layout(std430, set = 0, binding = BUILD_LIGHTS) readonly buffer GiLightBuffer {
     GiLightRecord gi_lights[];
 };
+layout(std140, set = 0, binding = BUILD_LIGHT_BLOCK) uniform GiLightBlock {
+    GiLightRecord gi_light_block[GI_LIGHT_BLOCK_CAP];
+};
 layout(std430, set = 0, binding = BUILD_LISTS) readonly buffer GiListBuffer { uint gi_lists[]; };
 layout(set = 0, binding = BUILD_SHADOW_MAP) uniform sampler2DShadow gi_shadow_map;
 layout(set = 0, binding = BUILD_BASE_STORAGE, GI_STORAGE_FORMAT) writeonly uniform image3D
@@ -35,12 +38,15 @@ layout(set = 0, binding = BUILD_VISIBILITY, r8) writeonly uniform image3D gi_vis
 
 const uint SHADOW_MAP = 1u, SHADOW_RAY = 2u, SHADOW_SOFT_RAY = 3u; // VoxelShadow
 const bool HAS_RAYS = (GI_VISIBILITY & (1u << SHADOW_RAY | 1u << SHADOW_SOFT_RAY)) != 0u;
+const bool HAS_SPOTS = (GI_VISIBILITY & GI_VISIBILITY_SPOTS) != 0u;
+const bool IN_BLOCK = (GI_VISIBILITY & GI_VISIBILITY_BLOCK) != 0u;
 const float PI = 3.14159265358979;
 // Steps: 0 light; 1 light, but the base volume stays as it is, which the bounce still reads; 2 the
 // whole image of visibility becomes 1; 3 RADIANCE goes to the base volume (faces shared).
 const uint STEP_KEEP_BASE = 1u, STEP_CLEAR_VISIBILITY = 2u, STEP_STORE_BASE = 3u;
 
-vec3 light[6];     // sums; faces shared: the first alone
+// Sums; faces shared: `whole` alone. Not an array: the software driver would keep it in memory.
+vec3 whole, light_0, light_1, light_2, light_3, light_4, light_5;
 float asked, seen; // lights that arrive and may be hidden; how much of them is seen
 
 // How a voxel as a whole faces a light; 0 = it does not.
@@ -52,16 +58,16 @@ float cosine(vec3 l) {
 // Light of this irradiance (across its rays) from unit direction l.
 void voxel_add(vec3 irradiance, vec3 l, float facing) {
     if (GI_FACES == 0u) {
-        light[0] += irradiance * facing;
+        whole += irradiance * facing;
         return;
     }
     vec3 p = max(l, vec3(0.0)), q = max(-l, vec3(0.0));
-    light[0] += irradiance * p.x;
-    light[1] += irradiance * q.x;
-    light[2] += irradiance * p.y;
-    light[3] += irradiance * q.y;
-    light[4] += irradiance * p.z;
-    light[5] += irradiance * q.z;
+    light_0 += irradiance * p.x;
+    light_1 += irradiance * q.x;
+    light_2 += irradiance * p.y;
+    light_3 += irradiance * q.y;
+    light_4 += irradiance * p.z;
+    light_5 += irradiance * q.z;
 }
 
 // Share of a light that arrives, and the books of it. reach: m to the light.
@@ -82,25 +88,33 @@ void add_local(GiLightRecord a) {
     float d2 = max(dot(to_light, to_light), 1e-8), inv_d = inversesqrt(d2);
     vec3 l = to_light * inv_d;
     float falloff = attenuation_exact(d2, inv_d, d2 * a.position.w, gi_frame.attenuation.xyz);
-    falloff *= a.extra.y != 0.0 ? spot_cone(l, a.direction, a.extra.x) : 1.0;
+    if (HAS_SPOTS) falloff *= a.extra.y != 0.0 ? spot_cone(l, a.direction, a.extra.x) : 1.0;
     float facing = cosine(l);
     falloff *= voxel_visibility(uint(a.color.w), l, d2 * inv_d, falloff * facing > 0.0);
     voxel_add(a.color.rgb * falloff, l, facing);
 }
 
 // Lights [first, first + count) of the lists, the same for all lanes; for those lanes whose turn it
-// is.
+// is. Each lane loads one, and a shuffle tells the others: of the index, if the lights fit into the
+// uniform block (a read at an address that is the same for all lanes is cheap there), else of all.
 void add_list(uint first, uint count, bool is_mine) {
     for (uint b = 0u; b < count; b += gl_SubgroupSize) {
-        GiLightRecord own =
-            gi_lights[gi_lists[first + min(b + gl_SubgroupInvocationID, count - 1u)]];
+        uint own_index = gi_lists[first + min(b + gl_SubgroupInvocationID, count - 1u)];
+        GiLightRecord own;
+        if (!IN_BLOCK) own = gi_lights[own_index];
         uint end = min(gl_SubgroupSize, count - b);
         for (uint j = 0u; j < end; j++) {
             GiLightRecord a;
-            a.position = subgroupShuffle(own.position, j);
-            a.color = subgroupShuffle(own.color, j);
-            a.direction = subgroupShuffle(own.direction, j);
-            a.extra.xy = subgroupShuffle(own.extra.xy, j);
+            if (IN_BLOCK) {
+                a = gi_light_block[subgroupShuffle(own_index, j)];
+            } else {
+                a.position = subgroupShuffle(own.position, j);
+                a.color = subgroupShuffle(own.color, j);
+                if (HAS_SPOTS) {
+                    a.direction = subgroupShuffle(own.direction, j);
+                    a.extra.xy = subgroupShuffle(own.extra.xy, j);
+                }
+            }
             // Out of reach of everybody else.
             a.position.w = is_mine ? a.position.w : 1e30;
             add_local(a);
@@ -149,19 +163,25 @@ void add_directionals() {
 
 // --- The result ---
 
+void store_face(uint slot, uint f, vec3 sent) {
+    // From behind a face is dark, not clear.
+    float opacity = max(voxel_face(f), voxel_face(f ^ 1u));
+    gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity));
+}
+
 void store(uint slot) {
     uvec3 place = gi_unpack_place(gi_voxels[slot]);
-    vec3 albedo = voxel_albedo(slot);
+    vec3 albedo = voxel_albedo(slot) * (1.0 / PI);
     vec3 emission = gi_unpack_emission(gi_attribute(slot, GI_ATTRIBUTE_EMISSION));
     if (GI_FACES != 0u) {
-        for (uint f = 0u; f < 6u; f++) {
-            vec3 sent = emission + albedo * light[f] * (1.0 / PI);
-            // From behind a face is dark, not clear.
-            float opacity = max(voxel_face(f), voxel_face(f ^ 1u));
-            gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity));
-        }
+        store_face(slot, 0u, emission + albedo * light_0);
+        store_face(slot, 1u, emission + albedo * light_1);
+        store_face(slot, 2u, emission + albedo * light_2);
+        store_face(slot, 3u, emission + albedo * light_3);
+        store_face(slot, 4u, emission + albedo * light_4);
+        store_face(slot, 5u, emission + albedo * light_5);
     } else {
-        vec4 radiance = vec4(emission + albedo * light[0] * (1.0 / PI), 1.0);
+        vec4 radiance = vec4(emission + albedo * whole, 1.0);
         gi_store_radiance(slot, 0u, radiance);
         if (GI_STEP != STEP_KEEP_BASE)
             imageStore(gi_base_storage, ivec3(place), gi_encode(radiance));
@@ -190,7 +210,7 @@ void main() {
     }
     // All lanes stay on: what they load is shared.
     voxel_load(min(gl_GlobalInvocationID.x, count - 1u));
-    for (int f = 0; f < 6; f++) light[f] = vec3(0.0);
+    whole = light_0 = light_1 = light_2 = light_3 = light_4 = light_5 = vec3(0.0);
     asked = seen = 0.0;
     add_directionals();
     add_locals();

@@ -99,32 +99,33 @@ typedef struct MeshVertex {
 #define BUILD_FRAME         1  // FrameRecord, uniform
 #define BUILD_MATERIALS     2  // MaterialRecord[], uniform
 #define BUILD_DIRECTIONALS  3  // DirectionalRecord[], uniform
-#define BUILD_FIRST_STORAGE 4
-#define BUILD_FLOW          4  // GiRecord, storage
-#define BUILD_VERTICES      5  // MeshVertex[] as uint[], storage: all meshes
-#define BUILD_MESH_INDICES  6  // uint[], storage: all meshes
-#define BUILD_INSTANCES     7  // InstanceRecord[], storage: the packet's gi_instances
-#define BUILD_MASKS         8  // uint[], storage: a bit a voxel, in layers (GI_MASK_*)
-#define BUILD_RANKS         9  // uint[], storage: set bits before each word of the masks
-#define BUILD_VOXELS        10 // uint[], storage: place of each occupied voxel (GI_VOXEL_*), by slot
-#define BUILD_ATTRIBUTES    11 // uint[], storage: GI_ATTRIBUTE_WORDS a slot
-#define BUILD_ACCUMULATORS  12 // uint[], storage: sums of what falls into a voxel
-#define BUILD_RADIANCE      13 // uint[], storage: what voxels send out, half floats, by slot and face
-#define BUILD_COUNTERS      14 // uint[], storage: GI_COUNTER_*, and arguments of dispatches
-#define BUILD_LIGHTS        15 // GiLightRecord[], storage: the packet's gi_lights
-#define BUILD_LISTS         16 // uint[], storage: lights of the cells of a grid over the volume
-#define BUILD_FIRST_IMAGE   17
-#define BUILD_SHADOW_MAP    17 // sampled, comparison
-#define BUILD_BASE          18 // sampled
-#define BUILD_ATLAS         19 // sampled
-#define BUILD_FIRST_STORAGE_IMAGE 20
-#define BUILD_BASE_STORAGE  20 // storage image, format of SPEC_GI_FORMAT
-#define BUILD_IRRADIANCE    21 // storage image rgba16f
-#define BUILD_VISIBILITY    22 // storage image r8
-#define BUILD_PROBES        23 // storage image rgba16f
-#define BUILD_MIP_SOURCE    24 // storage image: a level of the atlas
-#define BUILD_MIP_TARGET    25 // the next one
-#define BUILD_COUNT         26
+#define BUILD_LIGHT_BLOCK   4  // GiLightRecord[GI_LIGHT_BLOCK_CAP], uniform: the first of BUILD_LIGHTS
+#define BUILD_FIRST_STORAGE 5
+#define BUILD_FLOW          5  // GiRecord, storage
+#define BUILD_VERTICES      6  // MeshVertex[] as uint[], storage: all meshes
+#define BUILD_MESH_INDICES  7  // uint[], storage: all meshes
+#define BUILD_INSTANCES     8  // InstanceRecord[], storage: the packet's gi_instances
+#define BUILD_MASKS         9  // uint[], storage: a bit a voxel, in layers (GI_MASK_*)
+#define BUILD_RANKS         10 // uint[], storage: set bits before each word of the masks
+#define BUILD_VOXELS        11 // uint[], storage: place of each occupied voxel (GI_VOXEL_*), by slot
+#define BUILD_ATTRIBUTES    12 // uint[], storage: GI_ATTRIBUTE_WORDS a slot
+#define BUILD_ACCUMULATORS  13 // uint[], storage: sums of what falls into a voxel
+#define BUILD_RADIANCE      14 // uint[], storage: what voxels send out, half floats, by slot and face
+#define BUILD_COUNTERS      15 // uint[], storage: GI_COUNTER_*, and arguments of dispatches
+#define BUILD_LIGHTS        16 // GiLightRecord[], storage: the packet's gi_lights
+#define BUILD_LISTS         17 // uint[], storage: lights of the cells of a grid over the volume
+#define BUILD_FIRST_IMAGE   18
+#define BUILD_SHADOW_MAP    18 // sampled, comparison
+#define BUILD_BASE          19 // sampled
+#define BUILD_ATLAS         20 // sampled
+#define BUILD_FIRST_STORAGE_IMAGE 21
+#define BUILD_BASE_STORAGE  21 // storage image, format of SPEC_GI_FORMAT
+#define BUILD_IRRADIANCE    22 // storage image rgba16f
+#define BUILD_VISIBILITY    23 // storage image r8
+#define BUILD_PROBES        24 // storage image rgba16f
+#define BUILD_MIP_SOURCE    25 // storage image: a level of the atlas
+#define BUILD_MIP_TARGET    26 // the next one
+#define BUILD_COUNT         27
 
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---
@@ -243,6 +244,10 @@ typedef struct MeshVertex {
 // SPEC_GI_VISIBILITY, beside a bit for each VoxelShadow.
 #define GI_VISIBILITY_SOLID 16 // there is a layer of solid voxels, which rays meet
 #define GI_VISIBILITY_KEPT  32 // the mean over a voxel's lights is wanted
+// And of the lights: some are spots; all fit into the uniform block.
+#define GI_VISIBILITY_SPOTS 64
+#define GI_VISIBILITY_BLOCK 128
+#define GI_LIGHT_BLOCK_CAP  1024 // lights in 64 KiB
 // Layers of the masks; each has a bit for every voxel of all cascades (they lie one after another
 // along z): bit x + dims.x * (y + dims.y * (z + dims.z * cascade)).
 #define GI_MASK_STATIC  0

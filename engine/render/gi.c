@@ -322,13 +322,16 @@ static void decide(Renderer *renderer, const Packet *packet) {
     gi->is_warm |= renderer->is_warming_up;
 }
 
-// Bits of the ways in which voxels ask for lights, and surfaces for traced lights.
+// Bits of what lights voxels have and the ways in which they ask for them, and surfaces for traced
+// lights.
 static void find_shadows(GiState *gi, const Packet *packet) {
     const GiLightRecord *lights = PACKET_DATA(packet, gi_lights, GiLightRecord);
     const TracedLightRecord *traced = PACKET_DATA(packet, traced_lights, TracedLightRecord);
     gi->voxel_shadows = gi->traced_shadows = 0;
     for (u32 i = 0; i < packet->gi_lights.count; i++)
-        gi->voxel_shadows |= 1u << ((u32)lights[i].color[3] & 3);
+        gi->voxel_shadows |= 1u << ((u32)lights[i].color[3] & 3) |
+                             (lights[i].extra[1] != 0.0f ? GI_VISIBILITY_SPOTS : 0u);
+    if (packet->gi_lights.count <= GI_LIGHT_BLOCK_CAP) gi->voxel_shadows |= GI_VISIBILITY_BLOCK;
     const DirectionalRecord *suns = PACKET_DATA(packet, directionals, DirectionalRecord);
     for (u32 i = 0; i < packet->directionals.count; i++)
         if (suns[i].direction[3] >= 0.0f)
@@ -386,7 +389,7 @@ static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
     b[BUILD_ACCUMULATORS] = device_buffer(r, RESOURCE_GI_ACCUMULATORS);
     b[BUILD_RADIANCE] = device_buffer(r, RESOURCE_GI_RADIANCE);
     b[BUILD_COUNTERS] = device_buffer(r, RESOURCE_GI_COUNTERS);
-    b[BUILD_LIGHTS] = frame_buffer(r, FRAME_BUFFER_GI_LIGHTS);
+    b[BUILD_LIGHTS] = b[BUILD_LIGHT_BLOCK] = frame_buffer(r, FRAME_BUFFER_GI_LIGHTS);
     b[BUILD_LISTS] = frame_buffer(r, FRAME_BUFFER_GI_LISTS);
     b[BUILD_SHADOW_MAP] = texture(r, RESOURCE_SHADOW_MAP, r->sampler_shadow);
     b[BUILD_BASE] = texture(r, RESOURCE_GI_BASE, r->gi_sampler_linear);
@@ -514,6 +517,7 @@ u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size) {
         [GI_VOLUME_IRRADIANCE] = RESOURCE_GI_IRRADIANCE,
         [GI_VOLUME_VISIBILITY] = RESOURCE_GI_VISIBILITY,
         [GI_VOLUME_PROBES] = RESOURCE_GI_PROBES,
+        [GI_VOLUME_DIFFUSE] = RESOURCE_GI_TRACE_0,
     };
     RenderResource id = ids[which];
     bool is_buffer = id >= RESOURCE_FIRST_BUFFER;

@@ -57,7 +57,8 @@ static void clear_visibility(const PassContext *c) {
 
 static void light_record(const PassContext *c) {
     const GiState *gi = &c->renderer->gi;
-    if (gi->is_fresh && (gi->voxel_shadows & GI_VISIBILITY_KEPT)) clear_visibility(c);
+    // Nothing is in the way of what is not voxelised.
+    if (gi->voxelise_static && (gi->voxel_shadows & GI_VISIBILITY_KEPT)) clear_visibility(c);
     by_slot(c, PIPELINE_GI_LIGHT, gi_feeds_back(c) ? STEP_KEEP_BASE : STEP_LIGHT);
 }
 static void light_again_record(const PassContext *c) {
@@ -110,28 +111,10 @@ static bool wants_irradiance(const PassContext *c) {
            (c->packet->gi.params.diffuse == GI_DIFFUSE_VOXELS ||
             (settings->view == VIEW_GI_VOXELS && settings->gi_show == GI_SHOW_IRRADIANCE));
 }
-static bool irradiance_is_fresh(const PassContext *c) {
-    return wants_irradiance(c) && c->renderer->gi.is_fresh;
-}
-static void irradiance_clear_record(const PassContext *c) {
-    gpu_cmd_clear_texture(c->cmd, c->renderer->targets[RESOURCE_GI_IRRADIANCE]);
-}
 static void irradiance_record(const PassContext *c) { by_slot(c, PIPELINE_GI_IRRADIANCE, 0); }
-static const Pass irradiance_clear_pass = {"voxel irradiance start",
-                                           {OVERWRITE(GI_IRRADIANCE, COPY_TARGET)},
-                                           1,
-                                           irradiance_clear_record,
-                                           irradiance_is_fresh,
-                                           NULL};
-static const Pass irradiance_gather_pass = {"voxel irradiance",
-                                            {GATHER_USES, USE(GI_IRRADIANCE, STORAGE_COMPUTE)},
-                                            7,
-                                            irradiance_record,
-                                            NULL,
-                                            NULL};
-static void irradiance_expand(const PassContext *c) {
-    pass_run(c, &irradiance_clear_pass);
-    pass_run(c, &irradiance_gather_pass);
-}
-const Pass gi_irradiance_pass = {
-    .name = "voxel irradiance", .needed = wants_irradiance, .expand = irradiance_expand};
+const Pass gi_irradiance_pass = {"voxel irradiance",
+                                 {GATHER_USES, USE(GI_IRRADIANCE, STORAGE_COMPUTE)},
+                                 7,
+                                 irradiance_record,
+                                 wants_irradiance,
+                                 NULL};

@@ -69,7 +69,7 @@ extern const GpuFormat resource_formats[RESOURCE_COUNT];
     X(LIGHT_INDICES, light_indices, u32, 1)                                                        \
     X(GRID_NODES, grid_nodes, GridNode, 1)                                                         \
     X(GI_INSTANCES, gi_instances, InstanceRecord, 1)                                               \
-    X(GI_LIGHTS, gi_lights, GiLightRecord, 1)                                                      \
+    X(GI_LIGHTS, gi_lights, GiLightRecord, GI_LIGHT_BLOCK_CAP)                                     \
     X(GI_LISTS, gi_lists, u32, 1)                                                                  \
     X(TRACED_LIGHTS, traced_lights, TracedLightRecord, GI_TRACED_CAP)
 typedef enum FrameBuffer {

@@ -91,7 +91,8 @@ void voxel_scene_voxels(VoxelScene *stage, u64 seed, u32 x, u32 y, u32 z, u32 ca
 }
 
 void voxel_scene_lights(VoxelScene *stage, u64 seed, u32 count, f32 range_m, u32 ways) {
-    stage->lights = calloc(MAX(count, 1), sizeof *stage->lights);
+    stage->light_cap = MAX(count, GI_LIGHT_BLOCK_CAP);
+    stage->lights = calloc(stage->light_cap, sizeof *stage->lights);
     stage->light_count = count;
     const f32 *box = stage->gi.origin[stage->gi.dims[3] - 1];
     for (u32 i = 0; i < count; i++) {
@@ -113,7 +114,8 @@ void voxel_scene_lights(VoxelScene *stage, u64 seed, u32 count, f32 range_m, u32
         light->extra[0] = spot ? 8.0f : 0.0f;
         light->extra[1] = spot ? 1.0f : 0.0f;
     }
-    stage->spec[SPEC_GI_VISIBILITY] |= ways & 0xCu;
+    stage->spec[SPEC_GI_VISIBILITY] |= (ways & 0xCu) | GI_VISIBILITY_SPOTS;
+    if (count <= GI_LIGHT_BLOCK_CAP) stage->spec[SPEC_GI_VISIBILITY] |= GI_VISIBILITY_BLOCK;
     voxel_scene_list_all(stage);
 }
 
@@ -218,8 +220,8 @@ static void bench_group(Bench *b, const VoxelScene *stage) {
     bind[BUILD_ATTRIBUTES].buffer =
         keep(b, "attributes", stage->attributes, slots * 4 * GI_ATTRIBUTE_WORDS, false);
     bind[BUILD_COUNTERS].buffer = keep(b, "counters", counters, sizeof counters, true);
-    bind[BUILD_LIGHTS].buffer =
-        keep(b, "lights", stage->lights, stage->light_count * sizeof(GiLightRecord), false);
+    bind[BUILD_LIGHTS].buffer = bind[BUILD_LIGHT_BLOCK].buffer =
+        keep(b, "lights", stage->lights, stage->light_cap * sizeof(GiLightRecord), false);
     bind[BUILD_LISTS].buffer = keep(b, "lists", stage->lists, stage->list_words * 4, false);
     bind[BUILD_RADIANCE].buffer = b->radiance;
     bind[BUILD_SHADOW_MAP] = (GpuBinding){.texture = b->map, .sampler = b->compare};

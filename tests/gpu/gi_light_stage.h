@@ -16,7 +16,7 @@ typedef struct VoxelScene {
     u32 *places;     // by slot
     u32 *attributes; // GI_ATTRIBUTE_WORDS a slot
     GiLightRecord *lights;
-    u32 light_count;
+    u32 light_count, light_cap; // the latter are there
     u32 *lists, list_words;
     f32 map_depth; // of every texel of the shadow map
 } VoxelScene;
