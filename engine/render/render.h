@@ -132,6 +132,7 @@ typedef enum GiVolume {
     GI_VOLUME_IRRADIANCE,
     GI_VOLUME_VISIBILITY,
     GI_VOLUME_PROBES,
+    GI_VOLUME_DIFFUSE, // of traced pixels: indirect diffuse light without albedo, w ambient visibility
     GI_VOLUME_COUNT
 } GiVolume;
 // Returns the bytes copied, at most `size`; 0 = not there.
