@@ -106,7 +106,7 @@ static bool v5_scene(Bench *bench, const char *id, const GiScene *scene, u32 tic
                           variants[v].frame_ms / variants[0].frame_ms, true);
         bench_text(table, "%s", scene->name);
         bench_text(table, "%s", variants[v].frame.name);
-        bench_number(table, gi_pass_ms(&variants[v].frame.times, "shadow map"));
+        bench_number(table, gi_pass_ms(&variants[v].frame.times, "shadow"));
         bench_number(table, variants[v].steps[GI_STEP_shadows]);
         bench_number(table, variants[v].steps[GI_STEP_shade]);
         bench_number(table, variants[v].frame_ms);

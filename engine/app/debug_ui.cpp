@@ -264,6 +264,27 @@ static void panel_overruling_number(RenderSettings *settings, const SettingDesc 
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column->help);
 }
 
+// A word: the first is the level's, which is shown.
+static void panel_overruling_word(RenderSettings *settings, const SettingDesc *desc,
+                                  const ColumnDesc *column, const char *level_value) {
+    u32 *field = (u32 *)((u8 *)settings + desc->offset);
+    char words[512], word[48], shown[64];
+    words_to_items(desc->words, words, sizeof words);
+    snprintf(shown, sizeof shown, "%s (level)", level_value);
+    bool has_effect = setting_has_effect(settings, desc);
+    if (!has_effect) ImGui::BeginDisabled();
+    if (*field != 0) settings_word(desc->name, *field, word, sizeof word);
+    if (ImGui::BeginCombo(desc->name, *field == 0 ? shown : word)) {
+        u32 index = 0;
+        for (const char *item = words; *item; item += strlen(item) + 1, index++)
+            if (ImGui::Selectable(index == 0 ? shown : item, *field == index)) *field = index;
+        ImGui::EndCombo();
+    }
+    if (!has_effect) ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s", column->help);
+}
+
 static void panel_setting_or_level(const World *world, RenderSettings *settings,
                                    const SettingDesc *desc) {
     char value[48];
@@ -273,14 +294,7 @@ static void panel_setting_or_level(const World *world, RenderSettings *settings,
     } else if (desc->type == SETTING_F32 || desc->type == SETTING_U32) {
         panel_overruling_number(settings, desc, column, value);
     } else {
-        panel_setting(settings, desc);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column->help);
-        u32 word;
-        memcpy(&word, (u8 *)settings + desc->offset, sizeof word);
-        if (word == 0) {
-            ImGui::SameLine();
-            ImGui::TextDisabled("= %s", value);
-        }
+        panel_overruling_word(settings, desc, column, value);
     }
 }
 

@@ -28,6 +28,8 @@ static void gi_view_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {CLEARED(LDR)}, .target_count = 1});
     if (pipeline.id) {
         gi_bind_screen(c, pipeline);
+        // Some pictures take long; compiling takes a few pixels.
+        if (c->renderer->is_warming_up) gpu_cmd_scissor(c->cmd, 0, 0, 8, 8);
         gpu_cmd_draw(c->cmd, 3, 1, 0, 0);
         c->renderer->stats.draw_calls++;
     }
