@@ -45,7 +45,8 @@ GiProbeLight gi_probe_light(vec3 world, vec3 normal, uint count) {
                          dot(vec3(cx.open, cy.open, cz.open), weight));
         vec3 free = vec3(way.x > 0.0 ? cx.up : cx.down, way.y > 0.0 ? cy.up : cy.down,
                          way.z > 0.0 ? cz.up : cz.down);
-        vec3 seen = clamp((free + slack - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
+        free += mix(vec3(slack), vec3(0.0), equal(free, vec3(0.0))); // 0: behind is wall
+        vec3 seen = clamp((free - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
         float before = clamp(-dot(way, normal) * 8.0 + 0.25, 1e-4, 1.0);
         float valid = cx.up + cx.down > 0.0 ? 1.0 : 1e-6;
         float w = near.x * near.y * near.z * before * valid * (seen.x * seen.y * seen.z) + 1e-20;

@@ -59,8 +59,8 @@ float free_way(uint cascade, vec3 place, uint d, int steps) {
     return i < steps ? float(i) - ((d & 1u) == 0u ? within : 1.0 - within) : 1e9;
 }
 
-// A probe that stands in a thin wall steps out of it, to where most room is. Returns the direction,
-// 6: it is free, 7: too deep; place becomes the middle of the voxel on that way.
+// A probe that stands in a wall steps out of it on the nearest side, of equal ones to where most room
+// is. Returns the direction, 6: it is free, 7: too deep; place becomes the middle of the voxel there.
 uint leave_wall(uint cascade, inout vec3 place, int steps) {
     ivec3 at = ivec3(floor(place)), found = at;
     int most = 0;
@@ -71,7 +71,7 @@ uint leave_wall(uint cascade, inout vec3 place, int steps) {
         for (; wall < WALL_CAP && !is_free(cascade, at + stride * wall); wall++) {}
         int room = wall < WALL_CAP ? 0 : steps;
         for (; room < steps && is_free(cascade, at + stride * (wall + room)); room++) {}
-        room = wall < WALL_CAP ? room : 0;
+        room = wall < WALL_CAP ? room + (WALL_CAP - wall) * (STEPS_CAP + 1) : 0;
         found = room > most ? at + stride * wall : found;
         way = room > most ? d : way;
         most = max(most, room);

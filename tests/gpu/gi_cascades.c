@@ -25,7 +25,9 @@ static f64 mean_error(Studio *studio, const RenderImage *reference, const char *
 
 // Against a single fine grid: a second grid about the eye comes closer than the coarse one alone; a
 // third costs nothing of that, which it would if its border showed.
-#define COMMON "gi.enabled=on,gi.ao=off,gi.specular=off,gi.bounces=1"
+#define COMMON                                                                                     \
+    "gi.enabled=on,gi.ao=off,gi.specular=off,gi.bounces=1,gi.diffuse=cones,gi.resolution=full,"    \
+    "gi.mips=linear"
 TEST_GPU(gi_cascades, finer_near) {
     Studio studio;
     studio_open(&studio, "data/levels/cornell.toml");
