@@ -28,6 +28,7 @@ static PostTable *posts_of(Studio *studio) {
 
 static RenderImage draw(Studio *studio, const char *changes) {
     RenderSettings settings = settings_default();
+    assert_true(settings_set(&settings, "gi.enabled=off")); // draws are counted
     if (changes) assert_true(settings_set_list(&settings, changes));
     return studio_draw(studio, "main", &settings, WIDTH, HEIGHT);
 }
