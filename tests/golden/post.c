@@ -174,6 +174,7 @@ TEST_GPU(golden, post_heat_stays_in_its_sphere) {
     assert_true(draw(&studio, NULL).hash == on.hash);
     for (u32 path = 0; path < PATH_COUNT; path++) {
         RenderSettings settings = settings_default();
+        assert_true(settings_set(&settings, "gi.enabled=off"));
         settings.path = path;
         RenderImage other = studio_draw(&studio, "main", &settings, WIDTH, HEIGHT);
         ImageDifference d = image_compare(on.rgba, other.rgba, WIDTH, HEIGHT, &studio.images);
