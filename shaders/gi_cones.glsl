@@ -15,18 +15,18 @@
 // the lod is whole: see gi_cone_growth). What does not
 // change along a cone is made before, and all that steers a loop comes from gi_flow.
 //
-// With faces apart walls hold light back. What is blended must lie within the cone: texels a third of
-// its width (linear filtering reaches 1.5 of them to each side), read as often as there are such
-// texels. And surfaces must be opaque: of a wall that a cone meets at an angle the blocks of some
-// axes alone know, so a sample counts GI_DENSER times, up to opaque.
+// With faces apart walls hold light back. What is blended must lie within the cone: texels as wide as
+// the steps, with the usual step factor a third of the cone's width (linear filtering reaches 1.5 of
+// them to each side). And surfaces must be opaque: of a wall that a cone meets at an angle the blocks
+// of some axes alone know, so a sample counts GI_DENSER times, up to opaque. Smaller steps leak less.
 #ifndef GI_CONES_GLSL
 #define GI_CONES_GLSL
 
 const float GI_START = 1.0;  // voxels from the apex to the first sample
 const float GI_OPAQUE = 0.95; // as good as 1
-const float GI_FINER = GI_FACES != 0u ? 1.584962501 : 0.0; // levels: log2(3)
-const float GI_CLOSER = GI_FACES != 0u ? 2.0 / 3.0 : 1.0;  // on the step factor
 const float GI_DENSER = 3.0;
+const float GI_CLOSER = 2.0 / 3.0; // on the step factor
+const float GI_CLOSEST = GI_FACES != 0u ? 1.0 / 3.0 : 0.0; // voxels, a step at least
 
 struct GiCone {
     vec4 light;      // rgb premultiplied radiance, a opacity
@@ -68,8 +68,15 @@ float gi_exit(vec3 start, vec3 direction) {
     return enter < leave && enter <= 0.0 ? leave : 0.0;
 }
 
+// Length of a step over the width there (but at least GI_CLOSEST).
+float gi_cone_factor() {
+    return GI_FACES != 0u ? gi_flow.cone.y * GI_CLOSER : gi_flow.cone.y;
+}
 // Lod of a sample of this diameter (voxels, at least 1).
-float gi_cone_lod(float diameter) { return max(log2(diameter) - GI_FINER, 0.0); }
+float gi_cone_lod(float diameter) {
+    float width = GI_FACES != 0u ? diameter * min(gi_cone_factor(), 1.0) : diameter;
+    return max(log2(width), 0.0);
+}
 
 void gi_cone_add(inout GiCone cone, vec4 s, float falloff) {
     if (GI_FACES != 0u) s *= min(GI_DENSER, 1.0 / max(s.a, 1e-3));
@@ -111,7 +118,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
     float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half;
-    float factor = gi_flow.cone.y * GI_CLOSER;
+    float factor = gi_cone_factor();
     float lambda = gi_flow.strength.y * voxel, last_level = float(gi.atlas.w) - 1.0;
     vec3 per_voxel = 1.0 / vec3(gi.dims.xyz);
     vec3 q = gi_to_voxels(start, 0u) * per_voxel, dq = direction * per_voxel;
@@ -144,7 +151,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
         float level = min(gi_cone_lod(diameter) - gi_atlas_lod(), last_level);
         if (GI_NEAREST_MIPS != 0u) level = floor(level + 0.5);
         gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
-        t += diameter * factor;
+        t += max(diameter * factor, GI_CLOSEST);
     }
     gi_cone_end(cone);
     return cone;
@@ -155,7 +162,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
 GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, float end) {
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
-    float width = 2.0 * tan_half, factor = gi_flow.cone.y * GI_CLOSER;
+    float width = 2.0 * tan_half, factor = gi_cone_factor();
     float lambda = gi_flow.strength.y;
     while (t < end && cone.light.a < GI_OPAQUE) {
         vec3 at = start + direction * t;
@@ -165,7 +172,7 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
         vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
                            axes);
         gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
-        t += diameter * factor;
+        t += max(diameter * factor, GI_CLOSEST * voxel);
     }
     float whole = cone.light.a > GI_OPAQUE ? 1.0 / cone.light.a : 1.0;
     cone.light *= whole;

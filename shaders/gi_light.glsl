@@ -74,8 +74,8 @@ void voxel_add(vec3 irradiance, vec3 l, float facing) {
 float voxel_visibility(uint way, vec3 l, float reach, bool arrives) {
     if (!HAS_RAYS) return 1.0;
     bool is_asked = arrives && way >= SHADOW_RAY;
-    float begin = gi_ray_first(normal, l);
-    float visible = gi_ray(position, cascade, l, begin, reach, way == SHADOW_SOFT_RAY, is_asked);
+    vec3 start = position + gi_ray_lift(normal, l) * gi.origin[cascade].w;
+    float visible = gi_ray(start, cascade, l, reach, way == SHADOW_SOFT_RAY, is_asked);
     asked += is_asked ? 1.0 : 0.0;
     seen += is_asked ? visible : 0.0;
     return visible;

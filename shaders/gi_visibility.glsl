@@ -4,10 +4,9 @@
 #ifndef GI_VISIBILITY_GLSL
 #define GI_VISIBILITY_GLSL
 
-// A ray begins so many voxels away from the middle of its own one, whose surface is not in its way;
-// along a surface farther, but at most so many: where it has left the voxels that a plane through
-// its own one fills.
-const float GI_RAY_FIRST = 2.0, GI_RAY_FIRST_GRAZING = 16.0;
+// A ray begins so many voxels away from the middle of its own one, whose surface is not in its way:
+// two as published; where faces are apart, and light must not get through walls, one.
+const float GI_RAY_FIRST = GI_FACES != 0u ? 1.0 : 2.0;
 // ... and ends so many before a lamp: what the lamp is made of is not in its way either.
 const float GI_RAY_LAST = 1.0;
 // Less than this is as good as dark.
@@ -26,27 +25,27 @@ uint gi_ray_meets(uint bit) {
     return mask >> (bit & 31u) & 1u;
 }
 
-// Where a ray from the middle of a voxel with this normal (or 0) begins, in voxels. A plane fills a
-// layer half a voxel thick on each side along an axis, more at an angle.
-float gi_ray_first(vec3 normal, vec3 l) {
-    float height = dot(abs(normal), vec3(1.0)) - 0.45, facing = dot(normal, l);
-    float first = min(height / max(facing, 1e-4), GI_RAY_FIRST_GRAZING);
-    return facing > 0.0 ? max(first, GI_RAY_FIRST) : GI_RAY_FIRST;
+// What a ray's start is moved by, in voxels, from the middle of a voxel with this normal (or 0): off
+// the voxels that a plane through its own one fills, half a voxel to each side along an axis, more at
+// an angle. A start farther along the ray would do as well, and pass walls.
+vec3 gi_ray_lift(vec3 normal, vec3 l) {
+    float height = dot(abs(normal), vec3(1.0)) - 0.45;
+    return dot(normal, l) > 0.0 ? normal * height : vec3(0.0);
 }
 
-// Share of a light that arrives at `start` (world, middle of a voxel of the cascade) from unit
-// direction l, where the light is `reach` m away; begin: voxels that are passed over. soft: each voxel in the way takes
+// Share of a light that arrives at `start` (world; near the middle of a voxel of the cascade) from
+// unit direction l, where the light is `reach` m away. soft: each voxel in the way takes
 // min(hit / d, 1) of what is left, d its distance as a share of the grid's longest side, as the
 // specification of voxel GI says in 4; hard: the first takes all. wanted: else 1, for nothing.
 // A ray goes on through the coarser cascades.
-float gi_ray(vec3 start, uint cascade, vec3 l, float begin, float reach, bool soft, bool wanted) {
+float gi_ray(vec3 start, uint cascade, vec3 l, float reach, bool soft, bool wanted) {
     const uint steps = 4u; // in one iteration
     float seen = 1.0;
     float hit = gi_flow.strength.w;
     bool all_at_once = !soft || hit >= 1.0;
     vec3 slope = max(abs(l), vec3(1e-6)); // voxels of each axis that a voxel's length crosses
     bvec3 up = greaterThanEqual(l, vec3(0.0));
-    float first = begin * gi.origin[cascade].w; // m along the ray that are done
+    float first = GI_RAY_FIRST * gi.origin[cascade].w; // m along the ray that are done
     for (uint coarser = 0u; coarser < GI_CASCADES; coarser++) {
         uint c = min(cascade + coarser, GI_CASCADES - 1u);
         float voxel = gi.origin[c].w;

@@ -12,7 +12,7 @@ const char *const studio_levels[] = {
     "data/levels/cornell_empty.toml", "data/levels/hall.toml",
     "data/levels/light_box.toml",     "data/levels/lights_4096.toml",
     "data/levels/plane_test.toml",    "data/levels/emissive_teapot.toml",
-    "data/levels/moving_door.toml",
+    "data/levels/moving_door.toml",   "data/levels/sealed_room.toml",
 };
 const u32 studio_level_count = COUNT_OF(studio_levels);
 

@@ -112,7 +112,7 @@ TEST_GPU(gi_light, rays_through_cascades) {
     voxel_scene_voxels(&stage, 51, 16, 16, 16, 3, 15);
     voxel_scene_lights(&stage, 52, 16, 12.0f, 1u << 2);
     stage.spec[SPEC_GI_VISIBILITY] |= GI_VISIBILITY_KEPT;
-    check(&stage, stage.slot_count / 100);
+    check(&stage, stage.slot_count / 50);
     voxel_scene_free(&stage);
 }
 

@@ -123,18 +123,28 @@ static bool clip(const f32 start[3], const f32 l[3], const f64 low[3], f64 side[
     return *from < *to;
 }
 
-// Share of light that gets from a point through the voxels: the ray against each full voxel's box.
-static f32 light_twin_ray(const VoxelScene *stage, const f32 start[3], u32 cascade, const f32 l[3],
-                          f32 begin, f32 reach, bool soft) {
-    const u32 *dims = stage->gi.dims;
+// Share of light that gets from a voxel through the others: the ray against each full one's box. It
+// starts off the voxel's plane, and counts from so many voxels on.
+static f32 light_twin_ray(const VoxelScene *stage, const Voxel *v, const f32 l[3], f32 reach,
+                          bool soft) {
+    const u32 *dims = stage->gi.dims, cascade = v->cascade;
+    f32 height = fabsf(v->normal[0]) + fabsf(v->normal[1]) + fabsf(v->normal[2]) - 0.45f, start[3];
+    if (dot3(v->normal, l) <= 0.0f) height = 0.0f;
+    for (u32 a = 0; a < 3; a++) start[a] = v->position[a] + v->normal[a] * height * v->size;
+    f32 begin = stage->spec[SPEC_GI_FACES] ? 1.0f : 2.0f;
     f64 t = (f64)(begin * stage->gi.origin[cascade][3]), seen = 1.0;
     f64 hit = (f64)stage->gi.strength[3], longest = (f64)MAX(dims[0], MAX(dims[1], dims[2]));
     for (u32 c = cascade; c < dims[3]; c++) {
         const f32 *box = stage->gi.origin[c];
         f64 size = (f64)box[3], from = t, to = (f64)reach - size;
         f64 low[3] = {(f64)box[0], (f64)box[1], (f64)box[2]};
-        if (!clip(start, l, low, (f64[3]){size * dims[0], size * dims[1], size * dims[2]}, &from,
-                  &to))
+        bool outside = false; // a start moved off its grid's border is the next grid's
+        for (u32 a = 0; a < 3; a++) {
+            f64 at = ((f64)start[a] + (f64)l[a] * t - low[a]) / size;
+            outside |= at < 0.0 || at >= (f64)dims[a];
+        }
+        if (outside || !clip(start, l, low,
+                             (f64[3]){size * dims[0], size * dims[1], size * dims[2]}, &from, &to))
             continue;
         t = to;
         u32 volume = dims[0] * dims[1] * dims[2];
@@ -151,13 +161,6 @@ static f32 light_twin_ray(const VoxelScene *stage, const f32 start[3], u32 casca
         }
     }
     return seen < 1.0 / 256 ? 0.0f : (f32)seen;
-}
-
-// Voxels that a ray passes over: two, at a grazing angle as many as lie in the surface's layer.
-static f32 ray_begin(const Voxel *v, const f32 l[3]) {
-    f32 toward = dot3(v->normal, l);
-    f32 height = fabsf(v->normal[0]) + fabsf(v->normal[1]) + fabsf(v->normal[2]) - 0.45f;
-    return toward > 0.0f ? CLAMP(height / MAX(toward, 1e-4f), 2.0f, 16.0f) : 2.0f;
 }
 
 static f32 by_map(const VoxelScene *stage, const Voxel *v) {
@@ -184,9 +187,7 @@ LightSum light_twin(const VoxelScene *stage, u32 slot) {
         bool mapped = sun->direction[3] == 1.0f && sun->color[3] > 0.0f && stage->spec[SPEC_SHADOW];
         if (mapped) visible = by_map(stage, &v);
         if (sun->direction[3] >= 2.0f)
-            visible =
-                light_twin_ray(stage, v.position, v.cascade, sun->direction,
-                               ray_begin(&v, sun->direction), 1e30f, sun->direction[3] == 3.0f);
+            visible = light_twin_ray(stage, &v, sun->direction, 1e30f, sun->direction[3] == 3.0f);
         if ((mapped || sun->direction[3] >= 2.0f) &&
             any_facing(stage, &v, weight, sun->direction) > 0.0f)
             asked += 1.0f, seen += visible;
@@ -203,8 +204,7 @@ LightSum light_twin(const VoxelScene *stage, u32 slot) {
         f32 power = falloff(stage, light, d2, l), visible = 1.0f;
         if (power <= 0.0f) continue;
         if (light->color[3] >= 2.0f && any_facing(stage, &v, weight, l) > 0.0f) {
-            visible = light_twin_ray(stage, v.position, v.cascade, l, ray_begin(&v, l), d,
-                                     light->color[3] == 3.0f);
+            visible = light_twin_ray(stage, &v, l, d, light->color[3] == 3.0f);
             asked += 1.0f, seen += visible;
         }
         for (u32 k = 0; k < 3; k++) c[k] = light->color[k] * power * visible;
