@@ -297,6 +297,7 @@ void frame_sets_exchange(Renderer *renderer) {
         EXCHANGE(renderer->targets[RESOURCE_GBUFFER_0 + i], parked->gbuffer[i]);
         EXCHANGE(renderer->usage[RESOURCE_GBUFFER_0 + i], parked->gbuffer_usage[i]);
     }
+    renderer->frame_set ^= 1;
     FIELD(gi);
     for (u32 i = 0; i < GI_TEXTURES; i++) {
         EXCHANGE(renderer->targets[RESOURCE_FIRST_GI + i], parked->gi_textures[i]);

@@ -51,7 +51,7 @@ bool gi_create(Renderer *renderer) {
         gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = "gi reports",
                                                           .heap = "staging",
                                                           .kind = GPU_BUFFER_READBACK,
-                                                          .size = GPU_FRAMES_IN_FLIGHT_MAX *
+                                                          .size = GPU_FRAMES_IN_FLIGHT_MAX * 2 *
                                                                   GI_COUNTER_COUNT * sizeof(u32)});
     return renderer->gi_build_layout.id && renderer->gi_screen_layout.id &&
            renderer->gi_sampler_linear.id && renderer->gi_sampler_nearest_mip.id &&
@@ -473,25 +473,33 @@ static bool report_needed(const PassContext *c) {
 }
 static void report_record(const PassContext *c) {
     GiReports *reports = &c->renderer->gi_reports;
-    u32 slot = gpu_frame_slot(c->renderer->gpu), size = GI_COUNTER_COUNT * sizeof(u32);
+    u32 slot = gpu_frame_slot(c->renderer->gpu), set = c->renderer->frame_set;
+    u32 size = GI_COUNTER_COUNT * sizeof(u32);
     gpu_cmd_copy_buffer(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS], 0,
-                        reports->buffer, (u64)slot * size, size);
-    reports->reported[slot] = true;
+                        reports->buffer, (u64)(slot * 2 + set) * size, size);
+    reports->reported[slot][set] = true;
 }
 const Pass gi_report_pass = {
     "voxel report", {USE(GI_COUNTERS, COPY_SOURCE)}, 1, report_record, report_needed};
 
-bool gi_read_reports(Renderer *renderer, u32 slot) {
+// Of one frame set: each has buffers of its own, which grow by what it reports itself.
+static bool read_report(Renderer *renderer, u32 slot, u32 set) {
     GiReports *reports = &renderer->gi_reports;
-    GiState *gi = &renderer->gi;
-    if (!reports->reported[slot]) return false;
-    reports->reported[slot] = false;
+    GiState *gi = set == renderer->frame_set ? &renderer->gi : &renderer->parked.gi;
+    if (!reports->reported[slot][set]) return false;
+    reports->reported[slot][set] = false;
     const u32 *all = gpu_buffer_map(renderer->gpu, reports->buffer);
-    memcpy(reports->counters, all + (u64)slot * GI_COUNTER_COUNT, sizeof reports->counters);
+    memcpy(reports->counters, all + (u64)(slot * 2 + set) * GI_COUNTER_COUNT,
+           sizeof reports->counters);
     u64 wanted = (u64)reports->counters[GI_COUNTER_STATIC] + reports->counters[GI_COUNTER_DYNAMIC];
     if (reports->counters[GI_COUNTER_LOST] == 0 || wanted <= gi->slot_cap) return false;
     gi->slot_cap = (u32)MIN(GI_SLOTS_SPARE(wanted), UINT32_MAX);
     return true;
+}
+
+bool gi_read_reports(Renderer *renderer, u32 slot) {
+    bool other = read_report(renderer, slot, 1); // the first one's counters are those that are told
+    return read_report(renderer, slot, 0) || other;
 }
 
 u64 gi_memory(const Renderer *renderer) {

@@ -278,9 +278,9 @@ typedef struct GiState {
     // Probes: whose turn it is (is_cold: everybody's), frames until all had theirs.
     u32 probe_turn, probe_turns_left;
     u32 feedback_left; // frames in which feedback goes on without a change
-    bool has_dynamic; // dynamic voxels are in the masks
-    bool has_lit;     // the volumes were lit since they are there
-    bool is_warm;     // every pass has run
+    bool has_dynamic;  // dynamic voxels are in the masks
+    bool has_lit;      // the volumes were lit since they are there
+    bool is_warm;      // every pass has run
     // What this packet asks for, decided once (gi_begin): see the passes' needed functions.
     bool is_on, is_cold; // is_cold: nothing that is spread over frames may be left over
     bool is_fresh;       // nothing was ever written to the volumes
@@ -290,8 +290,8 @@ typedef struct GiState {
 // What frames report of the voxels: GI_COUNTER_COUNT counters a slot of a frame in flight.
 typedef struct GiReports {
     GpuBuffer buffer;
-    bool reported[GPU_FRAMES_IN_FLIGHT_MAX];
-    u32 counters[GI_COUNTER_COUNT]; // of the newest
+    bool reported[GPU_FRAMES_IN_FLIGHT_MAX][2]; // by slot and frame set
+    u32 counters[GI_COUNTER_COUNT];             // of the newest
 } GiReports;
 
 // What belongs to one packet of a frame. A split frame draws two packets in one submit: the
@@ -353,6 +353,7 @@ struct Renderer {
     u32 bindings_version;    // counts how often that was so
     u32 frame_group_version; // of the bindings in frame_group
     FrameSet parked;         // of the other packet of a split frame
+    u32 frame_set;           // which is in use: 0, or 1 while the other packet is drawn
 
     // Level.
     u64 assets_stamp;

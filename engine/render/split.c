@@ -79,6 +79,7 @@ bool renderer_draw_split(Renderer *renderer, GpuCommands *cmd, const Packet *a, 
     }
     renderer->stats = (RendererStats){.pipelines = renderer->stats.pipelines};
     device_lists_read(renderer, gpu_frame_slot(renderer->gpu));
+    gi_read_reports(renderer, gpu_frame_slot(renderer->gpu));
     frame_sets_exchange(renderer);
     renderer->legend_left_px = legend_left(b, split);
     bool ok = packet_draw(renderer, cmd, b);

@@ -21,8 +21,11 @@ static Ways draw_ways(Studio *studio, const char *a, const char *b, const SplitV
     assert_true(settings_set_list(&settings[1], b));
     session_frame_begin(&studio->session);
     const Packet *packets[2];
-    SessionView view = {
-        .camera = "main", .settings = settings[0], .width_px = WIDTH, .height_px = HEIGHT};
+    SessionView view = {.camera = "main",
+                        .settings = settings[0],
+                        .width_px = WIDTH,
+                        .height_px = HEIGHT,
+                        .cold = true};
     assert_true(
         session_packet_split(&studio->session, &view, &settings[1], &packets[0], &packets[1]));
     for (u32 i = 0; i < 2; i++)
