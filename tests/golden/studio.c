@@ -8,11 +8,12 @@
 #include <unistd.h>
 
 const char *const studio_levels[] = {
-    "data/levels/cloister.toml",      "data/levels/cornell.toml",
-    "data/levels/cornell_empty.toml", "data/levels/hall.toml",
-    "data/levels/light_box.toml",     "data/levels/lights_4096.toml",
-    "data/levels/plane_test.toml",    "data/levels/emissive_teapot.toml",
-    "data/levels/moving_door.toml",   "data/levels/sealed_room.toml",
+    "data/levels/cloister.toml",       "data/levels/cornell.toml",
+    "data/levels/cornell_empty.toml",  "data/levels/hall.toml",
+    "data/levels/light_box.toml",      "data/levels/lights_4096.toml",
+    "data/levels/plane_test.toml",     "data/levels/emissive_teapot.toml",
+    "data/levels/moving_door.toml",    "data/levels/sealed_room.toml",
+    "data/levels/red_green_wall.toml", "data/levels/uniform_wall.toml",
 };
 const u32 studio_level_count = COUNT_OF(studio_levels);
 
