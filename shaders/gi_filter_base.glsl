@@ -30,7 +30,8 @@ void forget(ivec3 place) {
 }
 
 void forget_word() {
-    uint word = gl_GlobalInvocationID.x;
+    uint word = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) +
+                gl_GlobalInvocationID.x;
     if (word >= gi_layer_words()) return;
     uint lit_word = GI_MASK_LIT * gi_layer_words() + word;
     uint now = gi_masks[GI_MASK_STATIC * gi_layer_words() + word] |

@@ -75,11 +75,18 @@ static void levels_record(const PassContext *c) {
     }
 }
 
-static void filter_record(const PassContext *c) {
-    // What moves leaves its light behind; and whatever was voxelised anew.
+// What moved leaves its light behind, and what was voxelised anew.
+static void forget(const PassContext *c) {
+    const GiState *gi = &c->renderer->gi;
+    if (!gi->voxelise_static && !gi->voxelise_dynamic && !gi->is_fresh) return;
     gi_bind_build(c, base_pipeline(c, STEP_FORGET), parent_level(c));
-    gpu_cmd_dispatch(c->cmd, (u32)((voxel_count(c) / 32 + 63) / 64), 1, 1);
+    u32 groups = (u32)((voxel_count(c) / 32 + 63) / 64), x = MIN(groups, 1u << 15);
+    gpu_cmd_dispatch(c->cmd, x, (groups + x - 1) / x, 1); // a device may have 65,535 along x
     images_barrier(c);
+}
+
+static void filter_record(const PassContext *c) {
+    forget(c);
     levels_record(c);
 }
 
