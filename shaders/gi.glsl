@@ -87,9 +87,6 @@ vec3 gi_to_voxels(vec3 world, uint cascade) {
 vec3 gi_to_world(vec3 voxels, uint cascade) {
     return voxels * gi.origin[cascade].w + gi.origin[cascade].xyz;
 }
-bool gi_inside(vec3 voxels) {
-    return all(greaterThanEqual(voxels, vec3(0.0))) && all(lessThan(voxels, vec3(gi.dims.xyz)));
-}
 
 // --- Masks and slots ---
 
@@ -112,10 +109,6 @@ bool gi_occupied(uint bit) {
 // first, then the dynamic one. So static voxels have slots 0.., dynamic ones follow, in the order
 // of their bits.
 const uint GI_NO_SLOT = 0xffffffffu;
-uint gi_layer_slot(uint layer, uint bit) {
-    uint word = gi_mask_word(layer, bit), mask = gi_masks[word];
-    return gi_ranks[word] + uint(bitCount(mask & ((1u << (bit & 31u)) - 1u)));
-}
 // Of an occupied voxel; GI_NO_SLOT for empty ones and those that found no room.
 uint gi_slot(uint bit) {
     uint fixed_word = gi_mask_word(GI_MASK_STATIC, bit);
@@ -299,15 +292,6 @@ uint gi_cascade(vec3 world, float diameter) {
         if (min(min(room.x, room.y), room.z) >= margin) found = i;
     }
     return found;
-}
-
-// gi_sample for a place in the world and a diameter in m: picks the cascade. Outside all: nothing.
-vec4 gi_sample_world(vec3 world, float diameter, GiAxes axes) {
-    uint cascade = gi_cascade(world, diameter);
-    uint held = min(cascade, GI_CASCADES - 1u);
-    float lod = max(log2(diameter / gi.origin[held].w), 0.0);
-    vec4 light = gi_sample(gi_to_voxels(world, held), held, lod, axes);
-    return cascade < GI_CASCADES ? light : vec4(0.0);
 }
 
 #endif
