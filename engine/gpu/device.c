@@ -184,6 +184,7 @@ static void device_read_info(Gpu *gpu) {
     }
     info->max_storage_buffer_size = gpu->limits.maxStorageBufferRange;
     info->max_texture_side = gpu->limits.maxImageDimension2D;
+    info->max_groups_x = gpu->limits.maxComputeWorkGroupCount[0];
     info->timestamps = timestamp_bits > 0 && gpu->limits.timestampPeriod > 0.0f;
 }
 

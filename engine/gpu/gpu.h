@@ -58,6 +58,7 @@ typedef struct GpuInfo {
     bool rgba32f_blend;              // RGBA32F render targets can blend
     u64 max_storage_buffer_size;
     u32 max_texture_side;
+    u32 max_groups_x; // of a dispatch
     f32 max_anisotropy;
     bool timestamps;
     // Subgroup basic, ballot, shuffle and arithmetic operations work in these stages.

@@ -18,7 +18,7 @@
 // 0.7, 0.3 % of what goes round are left to come.
 #define GI_FEEDBACK_FRAMES 16
 // Buffers by slot that were too small grow to what was wanted and this share more.
-#define GI_SLOTS_SPARE(count) ((count) + (count) / 8)
+#define GI_SLOTS_SPARE(count) ((count) + (count) / 32)
 
 static const char *const resource_labels[RESOURCE_COUNT] = {
 #define X(id, label, format) label,
@@ -180,6 +180,7 @@ static bool texture_ensure(Renderer *renderer, const Packet *packet, RenderResou
 static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, bool *made) {
     GpuBuffer *buffer = &renderer->device_buffers[id];
     size = MAX(size, 256);
+    if (size > gpu_info(renderer->gpu)->max_storage_buffer_size) return false;
     // What shrank by much is made anew as well: 512^3 voxels leave hundreds of megabytes behind.
     u64 there = buffer->id ? gpu_buffer_size(renderer->gpu, *buffer) : 0;
     if (there >= size && there / 4 <= size) return true;
@@ -225,6 +226,15 @@ static u32 slots_at_first(const u32 dims[4]) {
     return (u32)MIN(MAX(slots, GI_SLOTS_MIN), voxels);
 }
 
+// Slots that one storage buffer, and one dispatch along x, can hold at most. Voxels beyond have no
+// light of their own.
+static u32 slots_at_most(const Renderer *renderer, const GiParams *params) {
+    const GpuInfo *info = gpu_info(renderer->gpu);
+    u64 bytes = MAX(gi_buffer_bytes(RESOURCE_GI_ATTRIBUTES, 0, 1, params),
+                    gi_buffer_bytes(RESOURCE_GI_RADIANCE, 0, 1, params));
+    return (u32)MIN(info->max_storage_buffer_size / bytes, (u64)info->max_groups_x * 64);
+}
+
 static bool resize(Renderer *renderer, const Packet *packet) {
     GiState *gi = &renderer->gi;
     const GiParams *params = &packet->gi.params;
@@ -234,6 +244,7 @@ static bool resize(Renderer *renderer, const Packet *packet) {
                 gi->faces == params->faces && gi->filter == params->filter &&
                 gi->solid == params->solid;
     if (!same || gi->slot_cap == 0) gi->slot_cap = slots_at_first(record->dims);
+    gi->slot_cap = MIN(gi->slot_cap, slots_at_most(renderer, params));
     bool ok = true, made = !same;
     for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_FIRST_BUFFER && ok; id++)
         ok = texture_ensure(renderer, packet, (RenderResource)id, &made);
@@ -493,7 +504,15 @@ static bool read_report(Renderer *renderer, u32 slot, u32 set) {
            sizeof reports->counters);
     u64 wanted = (u64)reports->counters[GI_COUNTER_STATIC] + reports->counters[GI_COUNTER_DYNAMIC];
     if (reports->counters[GI_COUNTER_LOST] == 0 || wanted <= gi->slot_cap) return false;
-    gi->slot_cap = (u32)MIN(GI_SLOTS_SPARE(wanted), UINT32_MAX);
+    u32 most = slots_at_most(renderer, &(GiParams){.faces = gi->faces});
+    static bool told;
+    if (wanted > most && !told)
+        LOG(RENDER_LIMIT,
+            "%llu voxels are occupied, the device has room for %u: the others are dark",
+            (unsigned long long)wanted, most);
+    told |= wanted > most;
+    if (gi->slot_cap >= most) return false;
+    gi->slot_cap = (u32)MIN(GI_SLOTS_SPARE(wanted), most);
     return true;
 }
 
