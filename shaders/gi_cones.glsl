@@ -190,6 +190,27 @@ GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float re
     return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end);
 }
 
+// Opacity of a cone towards a light, arguments as for gi_cone. A sample close to the end counts by
+// the share of its step before it: where the number of steps changes there would be rings.
+float gi_shadow_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
+    GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
+    GiAxes axes = gi_axes(direction);
+    float width = 2.0 * tan_half, factor = gi_cone_factor();
+    float t = first * gi_voxel_at(start), end = min(reach, gi_exit(start, direction));
+    while (t < end && cone.light.a < GI_OPAQUE) {
+        vec3 at = start + direction * t;
+        uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
+        float voxel = gi_flow.origin[cascade].w;
+        float diameter = max(width * t, gi_grain(at, cascade));
+        float step = max(diameter * factor, GI_CLOSEST * voxel);
+        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
+                           axes);
+        gi_cone_add(cone, s * clamp((end - t) / step, 0.0, 1.0), 1.0);
+        t += step;
+    }
+    return cone.light.a > GI_OPAQUE ? 1.0 : cone.light.a;
+}
+
 // The level's longest distance, m.
 float gi_reach() { return gi_flow.cone.z > 0.0 ? gi_flow.cone.z : 1e9; }
 

@@ -47,7 +47,7 @@ void main() {
             float distance = length(light.position.xyz - start) - gi_voxel_at(start);
             float reach = kind == KIND_DIRECTIONAL ? 1e9 : distance;
             bool is_lit = by_cone && g.depth > 0.0 && a.falloff > 0.0;
-            float opacity = gi_cone(start, a.l, shadow.x, first, is_lit ? reach : 0.0).light.a;
+            float opacity = gi_shadow_cone(start, a.l, shadow.x, first, is_lit ? reach : 0.0);
             visibility = by_cone ? clamp(1.0 - opacity * shadow.y, 0.0, 1.0) : visibility;
         }
         sum += light.color.rgb * brdf(s, a.l, a.n_dot_l, light.color.w) * (a.falloff * visibility);

@@ -29,9 +29,12 @@ static const MatrixPath matrix_paths[] = {
 };
 _Static_assert(COUNT_OF(matrix_paths) == PATH_COUNT, "every path is in the matrix");
 
-// Nothing is simplified: the picture is that of all lights.
+// Nothing is simplified: the picture is that of all lights. Light that bounces is compared in
+// gi_screen.c: at less than full resolution it tells surfaces apart by normals that layouts keep
+// with few bits.
 static RenderSettings exact_settings(u32 light_limit) {
     RenderSettings settings = settings_default();
+    assert_true(settings_set(&settings, "gi.enabled=off"));
     settings.light_limit = light_limit;
     settings.merge = settings.drop = settings.light_lod = settings.vertex_lighting = 0;
     settings.budget = 0;
