@@ -22,9 +22,9 @@ extern "C" {
 #endif
 
 #define LIGHT_MANAGER_STEP 6u  // ticks
-#define LIGHT_FADE_TICKS   15u // a quarter of a second: a pair becomes one, or two again
+#define LIGHT_FADE_TICKS   40u // two thirds of a second: a pair becomes one, or two again
 // What drops out or comes back (too small, too faint, over the budget) has nothing that takes its
-// place, so it takes longer, two seconds: a wall that one light lights changes by 3 / 255 a tick.
+// place, so it takes longer, two seconds: a wall that one light lights changes by 3 or 4 / 255 a tick.
 // Where a budget takes many at once it is up to 10.
 #define LIGHT_WEIGHT_TICKS 120u
 

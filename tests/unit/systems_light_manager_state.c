@@ -66,10 +66,10 @@ TEST(systems_light_manager_state, a_pair_at_the_threshold_does_not_flicker) {
         before = weight;
     }
     assert_true(weight == 1.0f);
-    assert_in_range(changes, 10, 16);
-    // Far apart it splits, in a quarter of a second, and both are back.
+    assert_in_range(changes, LIGHT_FADE_TICKS * 2 / 3, LIGHT_FADE_TICKS + 1);
+    // Far apart it splits, and both are back.
     place_pair(f, pair, 1.9f);
-    for (u32 i = 0; i < 30; i++) tick(f, state, ENTITY_NONE);
+    for (u32 i = 0; i < 2 * LIGHT_FADE_TICKS; i++) tick(f, state, ENTITY_NONE);
     assert_int_equal(light_manager_partner(state, f->world, pair[0], &weight), ENTITY_NONE);
     for (u32 i = 0; i < 2; i++) assert_true(light_manager_weight(state, f->world, pair[i]) == 1.0f);
     light_manager_destroy(state);
