@@ -54,7 +54,7 @@ static bool claim_view(FrameBench *run, const char *id, const char *camera, Rend
     run->view.camera = camera;
     FrameVariant variants[2] = {0};
     for (u32 v = 0; v < 2; v++) {
-        variants[v].settings = settings_default();
+        variants[v].settings = frame_settings_direct();
         variants[v].settings.path = path;
         variants[v].settings.manager = v == 0;
         char word[48];

@@ -158,8 +158,14 @@ void frame_variants_free(FrameVariant *variants, u32 count) {
     }
 }
 
-RenderSettings frame_bench_settings(const FrameBench *run, RenderPath path, u32 lights) {
+RenderSettings frame_settings_direct(void) {
     RenderSettings settings = settings_default();
+    settings_set(&settings, "gi.enabled=off");
+    return settings;
+}
+
+RenderSettings frame_bench_settings(const FrameBench *run, RenderPath path, u32 lights) {
+    RenderSettings settings = frame_settings_direct();
     settings.path = path;
     settings.light_limit = lights < run->light_count ? lights : 0;
     if (settings.light_limit)

@@ -63,7 +63,9 @@ bool frame_bench_warm_up(FrameBench *run);
 bool frame_bench_measure(FrameBench *run, FrameVariant *variants, u32 count,
                          const FrameRounds *rounds);
 void frame_variants_free(FrameVariant *variants, u32 count);
-// Default settings under a path with the level's first `lights` lights, so bright that together
+// Default settings without light that bounces: what the experiments with direct light compare.
+RenderSettings frame_settings_direct(void);
+// These under a path with the level's first `lights` lights, so bright that together
 // they give as much light as all of them do (at most ten times).
 RenderSettings frame_bench_settings(const FrameBench *run, RenderPath path, u32 lights);
 // Median frame time; NAN if it was not measured.

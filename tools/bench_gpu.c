@@ -54,7 +54,7 @@ bool bench_paths(Bench *bench, const char *id) {
         if (l > 0 && limits[l - 1] >= run.light_count) break; // the same picture again
         FrameVariant variants[COUNT_OF(order)] = {0};
         for (u32 p = 0; p < COUNT_OF(order); p++) {
-            variants[p].settings = settings_default();
+            variants[p].settings = frame_settings_direct();
             variants[p].settings.path = order[p];
             variants[p].settings.light_limit = limits[l];
             char word[64];

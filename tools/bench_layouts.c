@@ -30,7 +30,7 @@ static bool measure(Bench *bench, const char *id, LayoutCost costs[LAYOUT_COUNT]
     for (u32 size = 0; ok && size < 2; size++) {
         FrameVariant variants[LAYOUT_COUNT] = {0};
         for (u32 v = 0; v < LAYOUT_COUNT; v++) {
-            variants[v].settings = settings_default();
+            variants[v].settings = frame_settings_direct();
             variants[v].settings.layout = v;
             variants[v].width_px = sizes[size][0];
             variants[v].height_px = sizes[size][1];
