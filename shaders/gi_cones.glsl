@@ -158,8 +158,10 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
 }
 
 // Through several cascades: from the finest that has room for the cone where it is to the coarsest.
-// Lengths in m.
-GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, float end) {
+// Lengths in m. fades (a constant): a sample close to the end counts by the share of its step before
+// it; of cones that end at a light there would be rings where their number of steps changes.
+GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, float end,
+                        bool fades) {
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
     float width = 2.0 * tan_half, factor = gi_cone_factor();
@@ -171,8 +173,10 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
         float diameter = max(width * t, gi_grain(at, cascade));
         vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
                            axes);
+        float step = max(diameter * factor, GI_CLOSEST * voxel);
+        if (fades) s *= clamp((end - t) / step, 0.0, 1.0);
         gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
-        t += max(diameter * factor, GI_CLOSEST * voxel);
+        t += step;
     }
     float whole = cone.light.a > GI_OPAQUE ? 1.0 / cone.light.a : 1.0;
     cone.light *= whole;
@@ -187,28 +191,14 @@ GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float re
         float voxel = gi_flow.origin[0].w;
         return gi_cone_single(start, direction, tan_half, first, end / voxel);
     }
-    return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end);
+    return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end, false);
 }
 
-// Opacity of a cone towards a light, arguments as for gi_cone. A sample close to the end counts by
-// the share of its step before it: where the number of steps changes there would be rings.
+// Opacity of a cone towards a light, arguments as for gi_cone.
 float gi_shadow_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
-    GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
-    GiAxes axes = gi_axes(direction);
-    float width = 2.0 * tan_half, factor = gi_cone_factor();
-    float t = first * gi_voxel_at(start), end = min(reach, gi_exit(start, direction));
-    while (t < end && cone.light.a < GI_OPAQUE) {
-        vec3 at = start + direction * t;
-        uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
-        float voxel = gi_flow.origin[cascade].w;
-        float diameter = max(width * t, gi_grain(at, cascade));
-        float step = max(diameter * factor, GI_CLOSEST * voxel);
-        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
-                           axes);
-        gi_cone_add(cone, s * clamp((end - t) / step, 0.0, 1.0), 1.0);
-        t += step;
-    }
-    return cone.light.a > GI_OPAQUE ? 1.0 : cone.light.a;
+    float end = min(reach, gi_exit(start, direction));
+    return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end, true)
+        .light.a;
 }
 
 // The level's longest distance, m.

@@ -14,12 +14,6 @@
 #define FIRST_INDEX_CAP   (1u << 16)
 #define FIRST_CLUSTER_CAP (1u << 14)
 
-static const char *const labels[RESOURCE_COUNT] = {
-#define X(id, label, format) label,
-    RENDER_RESOURCES(X)
-#undef X
-};
-
 bool tile_lists_refined(const RenderSettings *settings) {
     return settings_tiled(settings) && settings->grid != GRID_GPU &&
            settings->tile_depth != TILE_DEPTH_OFF;
@@ -47,11 +41,11 @@ static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, u64 l
         return true;
     if (size > device_limit) {
         LOG(RENDER_LIMIT, "%s of this frame need %llu bytes, the device binds %llu at most",
-            labels[id], (unsigned long long)size, (unsigned long long)device_limit);
+            resource_labels[id], (unsigned long long)size, (unsigned long long)device_limit);
         return false;
     }
     if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
-    *buffer = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = labels[id],
+    *buffer = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = resource_labels[id],
                                                                 .heap = "lists",
                                                                 .kind = GPU_BUFFER_STATIC,
                                                                 .size = cap});
@@ -186,24 +180,5 @@ u64 renderer_read_lists(Renderer *renderer, ListBuffer which, void *out, u64 siz
     static const RenderResource ids[] = {RESOURCE_LIST_CELLS,     RESOURCE_LIST_INDICES,
                                          RESOURCE_TILE_DEPTHS,    RESOURCE_CLUSTERS,
                                          RESOURCE_PIXEL_CLUSTERS, RESOURCE_GRID_COUNTERS};
-    GpuBuffer from = renderer->device_buffers[ids[which]];
-    if (!from.id) return 0;
-    size = MIN(size, gpu_buffer_size(renderer->gpu, from));
-    GpuBuffer to = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = "list readback",
-                                                                     .heap = "staging",
-                                                                     .kind = GPU_BUFFER_READBACK,
-                                                                     .size = size});
-    GpuCommands *cmd = to.id ? gpu_frame_begin(renderer->gpu) : NULL;
-    if (!cmd) return 0;
-    gpu_cmd_barriers(cmd,
-                     &(GpuBarrier){.buffer = from,
-                                   .from = renderer->usage[ids[which]],
-                                   .to = GPU_USAGE_COPY_SOURCE},
-                     1);
-    renderer->usage[ids[which]] = GPU_USAGE_COPY_SOURCE;
-    gpu_cmd_copy_buffer(cmd, from, 0, to, 0, size);
-    bool ok = gpu_frame_end(renderer->gpu, true);
-    if (ok) memcpy(out, gpu_buffer_map(renderer->gpu, to), size);
-    gpu_destroy_buffer(renderer->gpu, to);
-    return ok ? size : 0;
+    return resource_read(renderer, ids[which], out, size);
 }

@@ -8,11 +8,6 @@
 #include "../base/log.h"
 #include <string.h>
 
-static const char *const target_labels[RESOURCE_COUNT] = {
-#define X(id, label, format) label,
-    RENDER_RESOURCES(X)
-#undef X
-};
 static const char *const buffer_labels[FRAME_BUFFER_COUNT] = {"frame", "light blocks", "gi",
 #define X(id, section, ...) #section,
                                                               FRAME_BUFFERS(X)
@@ -33,7 +28,7 @@ static bool target_create(Renderer *renderer, RenderResource id, u32 width, u32 
     renderer->frame_group_stale = true;
     if (!target_format(renderer, id)) return true; // the layout lacks it
     renderer->targets[id] =
-        gpu_create_texture(renderer->gpu, &(GpuTextureDesc){.label = target_labels[id],
+        gpu_create_texture(renderer->gpu, &(GpuTextureDesc){.label = resource_labels[id],
                                                             .heap = "targets",
                                                             .format = target_format(renderer, id),
                                                             .width = width,

@@ -20,12 +20,6 @@
 // Buffers by slot that were too small grow to what was wanted and this share more.
 #define GI_SLOTS_SPARE(count) ((count) + (count) / 32)
 
-static const char *const resource_labels[RESOURCE_COUNT] = {
-#define X(id, label, format) label,
-    RENDER_RESOURCES(X)
-#undef X
-};
-
 // --- Life ---
 
 bool gi_create(Renderer *renderer) {
@@ -105,7 +99,7 @@ static bool wants_visibility(const Packet *packet) {
     return wanted;
 }
 
-static bool wants_irradiance(const Packet *packet) {
+bool gi_wants_irradiance(const Packet *packet) {
     return packet->gi.params.diffuse == GI_DIFFUSE_VOXELS ||
            (packet->settings.view == VIEW_GI_VOXELS &&
             packet->settings.gi_show == GI_SHOW_IRRADIANCE);
@@ -132,7 +126,7 @@ static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
         shape = atlas;
         break;
     case RESOURCE_GI_IRRADIANCE:
-        if (wants_irradiance(packet)) shape = volume;
+        if (gi_wants_irradiance(packet)) shape = volume;
         break;
     case RESOURCE_GI_VISIBILITY:
         if (wants_visibility(packet)) shape = volume;
@@ -463,6 +457,17 @@ void gi_bind_screen(const PassContext *c, GpuPipeline pipeline) {
     gpu_cmd_bind_group(c->cmd, 2, c->renderer->gi.screen_group);
 }
 
+void gi_dispatch_slots(const PassContext *c, u32 args) {
+    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
+                              args * sizeof(u32));
+}
+
+void gi_dispatch_words(const PassContext *c, u64 invocations) {
+    u64 groups = (invocations + 63) / 64;
+    u32 x = (u32)MIN(groups, gpu_info(c->renderer->gpu)->max_groups_x);
+    if (x) gpu_cmd_dispatch(c->cmd, x, (u32)((groups + x - 1) / x), 1);
+}
+
 void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count) {
     GpuBarrier barriers[RESOURCE_COUNT];
     LUZ_ASSERT(count <= COUNT_OF(barriers));
@@ -546,33 +551,5 @@ u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size) {
         [GI_VOLUME_PROBES] = RESOURCE_GI_PROBES,
         [GI_VOLUME_DIFFUSE] = RESOURCE_GI_TRACE_0,
     };
-    RenderResource id = ids[which];
-    bool is_buffer = id >= RESOURCE_FIRST_BUFFER;
-    GpuTexture from_texture = renderer->targets[id];
-    GpuBuffer from = renderer->device_buffers[id];
-    if (is_buffer ? !from.id : !from_texture.id) return 0;
-    u64 whole = is_buffer ? gpu_buffer_size(renderer->gpu, from)
-                          : gpu_texture_size(renderer->gpu, from_texture);
-    GpuBuffer to = gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = "gi readback",
-                                                                     .heap = "staging",
-                                                                     .kind = GPU_BUFFER_READBACK,
-                                                                     .size = whole});
-    GpuCommands *cmd = to.id ? gpu_frame_begin(renderer->gpu) : NULL;
-    if (!cmd) return 0;
-    gpu_cmd_barriers(cmd,
-                     &(GpuBarrier){.texture = from_texture,
-                                   .buffer = from,
-                                   .from = renderer->usage[id],
-                                   .to = GPU_USAGE_COPY_SOURCE},
-                     1);
-    renderer->usage[id] = GPU_USAGE_COPY_SOURCE;
-    if (is_buffer)
-        gpu_cmd_copy_buffer(cmd, from, 0, to, 0, whole);
-    else
-        gpu_cmd_copy_mips_to_buffer(cmd, from_texture, to);
-    bool ok = gpu_frame_end(renderer->gpu, true);
-    size = MIN(size, whole);
-    if (ok) memcpy(out, gpu_buffer_map(renderer->gpu, to), size);
-    gpu_destroy_buffer(renderer->gpu, to);
-    return ok ? size : 0;
+    return resource_read(renderer, ids[which], out, size);
 }

@@ -54,8 +54,7 @@ static void images_barrier(const PassContext *c) {
 
 static void by_slot(const PassContext *c, u32 step, u32 level) {
     gi_bind_build(c, base_pipeline(c, step), level);
-    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
-                              GI_COUNTER_ALL_ARGS * sizeof(u32));
+    gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
     images_barrier(c);
 }
 
@@ -80,8 +79,7 @@ static void forget(const PassContext *c) {
     const GiState *gi = &c->renderer->gi;
     if (!gi->voxelise_static && !gi->voxelise_dynamic && !gi->is_fresh) return;
     gi_bind_build(c, base_pipeline(c, STEP_FORGET), parent_level(c));
-    u32 groups = (u32)((voxel_count(c) / 32 + 63) / 64), x = MIN(groups, 1u << 15);
-    gpu_cmd_dispatch(c->cmd, x, (groups + x - 1) / x, 1); // a device may have 65,535 along x
+    gi_dispatch_words(c, voxel_count(c) / 32);
     images_barrier(c);
 }
 

@@ -39,8 +39,7 @@ static void by_slot(const PassContext *c, PipelineKind kind, u32 step) {
         pipeline_get(c->renderer, c->packet, kind, (PipelineVariant){.post = step});
     if (!pipeline.id) return;
     gi_bind_build(c, pipeline, 0);
-    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
-                              GI_COUNTER_ALL_ARGS * sizeof(u32));
+    gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
 }
 
 // --- Light ---
@@ -106,10 +105,7 @@ const Pass gi_bounce_pass = {.name = "voxel bounce", .needed = gi_bounces, .expa
 // --- Irradiance ---
 
 static bool wants_irradiance(const PassContext *c) {
-    const RenderSettings *settings = &c->packet->settings;
-    return is_relit(c) &&
-           (c->packet->gi.params.diffuse == GI_DIFFUSE_VOXELS ||
-            (settings->view == VIEW_GI_VOXELS && settings->gi_show == GI_SHOW_IRRADIANCE));
+    return is_relit(c) && gi_wants_irradiance(c->packet);
 }
 static void irradiance_record(const PassContext *c) { by_slot(c, PIPELINE_GI_IRRADIANCE, 0); }
 const Pass gi_irradiance_pass = {"voxel irradiance",

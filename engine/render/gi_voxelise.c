@@ -84,16 +84,11 @@ static bool bind_step(const PassContext *c, PipelineKind kind, u32 step,
     return true;
 }
 
-// Groups of 64 invocations, in y and z where x is full.
+// Groups of 64 invocations, in z where x is full.
 static void dispatch_many(const PassContext *c, u64 invocations, u32 parts) {
     u64 groups = (invocations + GROUP - 1) / GROUP;
     u32 x = (u32)MIN(groups, GROUPS_MAX);
     if (x) gpu_cmd_dispatch(c->cmd, x, parts, (u32)((groups + x - 1) / x));
-}
-static void dispatch_words(const PassContext *c, u64 invocations) {
-    u64 groups = (invocations + GROUP - 1) / GROUP;
-    u32 x = (u32)MIN(groups, GROUPS_MAX);
-    if (x) gpu_cmd_dispatch(c->cmd, x, (u32)((groups + x - 1) / x), 1);
 }
 
 // --- Draws ---
@@ -275,7 +270,7 @@ static void fill_solids(const Layer *layer) {
             to_usage(c, RESOURCE_GI_ACCUMULATORS, GPU_USAGE_STORAGE_COMPUTE);
             to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_STORAGE_COMPUTE);
             if (!bind_step(c, PIPELINE_GI_SOLID, SOLID_FILL, &record)) return;
-            dispatch_words(c, rows);
+            gi_dispatch_words(c, rows);
         }
     }
 }
@@ -298,7 +293,7 @@ static void rank_and_list(const Layer *layer) {
     to_usage(c, RESOURCE_GI_RANKS, GPU_USAGE_STORAGE_READ_COMPUTE);
     to_usage(c, RESOURCE_GI_VOXELS, GPU_USAGE_STORAGE_COMPUTE);
     if (!bind_step(c, PIPELINE_GI_LIST, 0, &record)) return;
-    dispatch_words(c, layer_words(c));
+    gi_dispatch_words(c, layer_words(c));
 }
 
 static void add_up(const Layer *layer) {
@@ -315,10 +310,9 @@ static void add_up(const Layer *layer) {
         // As many as the device counted; of later windows, which are rare, as many as can be.
         u32 args = layer->flags ? GI_COUNTER_DYNAMIC_ARGS : GI_COUNTER_ALL_ARGS;
         if (window == 0)
-            gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
-                                      args * sizeof(u32));
+            gi_dispatch_slots(c, args);
         else
-            dispatch_words(c, MIN(cap - window, GI_WINDOW_SLOTS));
+            gi_dispatch_words(c, MIN(cap - window, GI_WINDOW_SLOTS));
     }
 }
 
@@ -395,14 +389,13 @@ static void dynamic_record(const PassContext *c) {
     // The last dynamic voxels go, by their list; static slots stay as they are.
     const GiDrawRecord record = {.how = {GI_DRAW_DYNAMIC}};
     if (!c->renderer->gi.voxelise_static && bind_step(c, PIPELINE_GI_CLEAR, CLEAR_IMAGES, &record))
-        gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_COUNTERS],
-                                  GI_COUNTER_DYNAMIC_ARGS * sizeof(u32));
+        gi_dispatch_slots(c, GI_COUNTER_DYNAMIC_ARGS);
     to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_COPY_TARGET);
     fill_layers(c, GI_MASK_DYNAMIC, 1);
     if (c->packet->gi.params.solid) {
         to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_STORAGE_COMPUTE);
         if (bind_step(c, PIPELINE_GI_CLEAR, CLEAR_SOLIDS, &record))
-            dispatch_words(c, layer_words(c));
+            gi_dispatch_words(c, layer_words(c));
     }
     make_layer(c, c->packet->gi_dynamic_draws, GI_DRAW_DYNAMIC);
 }

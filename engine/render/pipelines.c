@@ -7,6 +7,11 @@
 #include "../base/log.h"
 #include <string.h>
 
+const char *const resource_labels[RESOURCE_COUNT] = {
+#define X(id, label, format) label,
+    RENDER_RESOURCES(X)
+#undef X
+};
 const GpuFormat resource_formats[RESOURCE_COUNT] = {
 #define X(id, label, format) format,
     RENDER_RESOURCES(X)

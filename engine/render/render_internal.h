@@ -55,6 +55,7 @@ typedef enum RenderResource {
     RESOURCE_FIRST_BUFFER = RESOURCE_LIST_CELLS,
     RESOURCE_FIRST_GI_BUFFER = RESOURCE_GI_MASKS // to the end
 } RenderResource;
+extern const char *const resource_labels[RESOURCE_COUNT];
 extern const GpuFormat resource_formats[RESOURCE_COUNT];
 
 // Buffers filled from the packet each frame: X(id, section, element type, smallest count). The
@@ -401,6 +402,10 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
 #define PIPELINE_PLAIN ((PipelineVariant){0})
 void pipelines_destroy(Renderer *renderer);
 
+// renderer.c: what a resource holds after the last frame, which is done: a texture's mips, tightly
+// packed, or a buffer. Returns the bytes copied, at most `size`; 0 = not there.
+u64 resource_read(Renderer *renderer, RenderResource id, void *out, u64 size);
+
 // render_assets.c
 bool render_assets_create(Renderer *renderer); // stand-ins, samplers
 void render_assets_destroy(Renderer *renderer);
@@ -461,6 +466,12 @@ bool gi_is_on(const PassContext *c);
 void gi_bind_build(const PassContext *c, GpuPipeline pipeline, u32 level);
 // Binds a pipeline that reads voxels for the screen: the frame's group, and GI's as set 2.
 void gi_bind_screen(const PassContext *c, GpuPipeline pipeline);
+// One invocation a slot, as many as the device counted; args: GI_COUNTER_ALL_ARGS or _DYNAMIC_ARGS.
+void gi_dispatch_slots(const PassContext *c, u32 args);
+// Groups of 64 invocations, in y where x is full.
+void gi_dispatch_words(const PassContext *c, u64 invocations);
+// Does the picture ask for the irradiance of voxels?
+bool gi_wants_irradiance(const Packet *packet);
 // Makes what one dispatch of a pass wrote visible to the next; for resources in STORAGE_COMPUTE.
 void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count);
 // Bytes of all that GI keeps on the device.

@@ -152,6 +152,39 @@ u64 render_image_hash(const u8 *rgba, u32 width_px, u32 height_px) {
     return hash_bytes(rgba, (u64)width_px * height_px * 4, hash_bytes(size, sizeof size, 0));
 }
 
+u64 resource_read(Renderer *renderer, RenderResource id, void *out, u64 size) {
+    Gpu *gpu = renderer->gpu;
+    GpuTexture texture = renderer->targets[id];
+    GpuBuffer buffer = renderer->device_buffers[id];
+    bool is_buffer = id >= RESOURCE_FIRST_BUFFER;
+    if (is_buffer ? !buffer.id : !texture.id) return 0;
+    u64 whole = is_buffer ? gpu_buffer_size(gpu, buffer) : gpu_texture_size(gpu, texture);
+    GpuBuffer to = gpu_create_buffer(gpu, &(GpuBufferDesc){.label = "read back",
+                                                           .heap = "staging",
+                                                           .kind = GPU_BUFFER_READBACK,
+                                                           .size = whole});
+    if (!to.id) return 0;
+    GpuCommands *cmd = gpu_frame_begin(gpu);
+    bool ok = cmd != NULL;
+    if (ok) {
+        GpuBarrier barrier = {.texture = texture,
+                              .buffer = buffer,
+                              .from = renderer->usage[id],
+                              .to = GPU_USAGE_COPY_SOURCE};
+        gpu_cmd_barriers(cmd, &barrier, 1);
+        renderer->usage[id] = GPU_USAGE_COPY_SOURCE;
+        if (is_buffer)
+            gpu_cmd_copy_buffer(cmd, buffer, 0, to, 0, whole);
+        else
+            gpu_cmd_copy_mips_to_buffer(cmd, texture, to);
+        ok = gpu_frame_end(gpu, true);
+    }
+    size = MIN(size, whole);
+    if (ok) memcpy(out, gpu_buffer_map(gpu, to), size);
+    gpu_destroy_buffer(gpu, to);
+    return ok ? size : 0;
+}
+
 u32 renderer_pass_names(RenderPath path, const char **out, u32 out_cap) {
     u32 count = 0;
     for (u32 i = 0; i < PATH_PASSES_CAP && path_table[path].passes[i] && count < out_cap; i++)

@@ -54,8 +54,7 @@ static u32 percentile(const RenderImage *a, const RenderImage *b, f64 share, f64
 }
 
 static RenderSettings settings_of(u32 path, u32 layout) {
-    RenderSettings settings = settings_default();
-    assert_true(settings_set(&settings, "gi.enabled=off")); // see matrix.c
+    RenderSettings settings = studio_direct_light(); // see matrix.c
     settings.path = path;
     settings.layout = layout;
     settings.vertex_lighting = 0;

@@ -38,16 +38,10 @@ static RenderImage draw_with(Studio *studio, Entity camera, const RenderSettings
     return image;
 }
 
-// Light that bounces is not the manager's: it comes from the level's own lights, a share of it a
-// frame.
-static RenderSettings direct_light(void) {
-    RenderSettings settings = settings_default();
-    assert_true(settings_set(&settings, "gi.enabled=off"));
-    return settings;
-}
-
+// Light that bounces is not the manager's (studio_direct_light): it comes from the level's own
+// lights, a share of it a frame.
 static RenderSettings stages(bool merge, bool drop, bool lod) {
-    RenderSettings settings = direct_light();
+    RenderSettings settings = studio_direct_light();
     settings.merge = merge, settings.drop = drop, settings.light_lod = lod;
     return settings;
 }
@@ -112,7 +106,7 @@ TEST_GPU(golden, occlusion_hides_only_what_is_hidden) {
 static ImageDifference compare_manager(Studio *studio, const char *camera, u32 budget,
                                        PacketCounts *counts) {
     u64 mark = arena_mark(&studio->images);
-    RenderSettings on = direct_light(), off = on;
+    RenderSettings on = studio_direct_light(), off = on;
     on.budget = budget;
     off.manager = 0;
     RenderImage a = studio_draw(studio, camera, &on, 640, 360);
@@ -176,7 +170,7 @@ static void expect_no_pops(u32 budget, u32 most) {
     LightManagerTable *manager = WORLD_TABLE(studio.session.world, LightManager, light_manager);
     manager->budget[world_singleton(studio.session.world, COMPONENT_light_manager)] = budget;
     Entity tour = session_camera(&studio.session, "tour");
-    RenderSettings settings = direct_light();
+    RenderSettings settings = studio_direct_light();
     settings.view = VIEW_FINAL;
     studio.session.packet_camera = tour; // the state looks through it from here on
     session_advance(&studio.session, FIRST);

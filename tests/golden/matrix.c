@@ -33,8 +33,7 @@ _Static_assert(COUNT_OF(matrix_paths) == PATH_COUNT, "every path is in the matri
 // gi_screen.c: at less than full resolution it tells surfaces apart by normals that layouts keep
 // with few bits.
 static RenderSettings exact_settings(u32 light_limit) {
-    RenderSettings settings = settings_default();
-    assert_true(settings_set(&settings, "gi.enabled=off"));
+    RenderSettings settings = studio_direct_light();
     settings.light_limit = light_limit;
     settings.merge = settings.drop = settings.light_lod = settings.vertex_lighting = 0;
     settings.budget = 0;

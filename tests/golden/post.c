@@ -27,8 +27,7 @@ static PostTable *posts_of(Studio *studio) {
 }
 
 static RenderImage draw(Studio *studio, const char *changes) {
-    RenderSettings settings = settings_default();
-    assert_true(settings_set(&settings, "gi.enabled=off")); // draws are counted
+    RenderSettings settings = studio_direct_light(); // draws are counted
     if (changes) assert_true(settings_set_list(&settings, changes));
     return studio_draw(studio, "main", &settings, WIDTH, HEIGHT);
 }
@@ -173,8 +172,7 @@ TEST_GPU(golden, post_heat_stays_in_its_sphere) {
     // The same picture twice, and in every path.
     assert_true(draw(&studio, NULL).hash == on.hash);
     for (u32 path = 0; path < PATH_COUNT; path++) {
-        RenderSettings settings = settings_default();
-        assert_true(settings_set(&settings, "gi.enabled=off"));
+        RenderSettings settings = studio_direct_light();
         settings.path = path;
         RenderImage other = studio_draw(&studio, "main", &settings, WIDTH, HEIGHT);
         ImageDifference d = image_compare(on.rgba, other.rgba, WIDTH, HEIGHT, &studio.images);

@@ -42,6 +42,12 @@ void studio_close(Studio *studio) {
     arena_destroy(&studio->images);
 }
 
+RenderSettings studio_direct_light(void) {
+    RenderSettings settings = settings_default();
+    assert_true(settings_set(&settings, "gi.enabled=off"));
+    return settings;
+}
+
 RenderImage studio_draw(Studio *studio, const char *camera, const RenderSettings *settings,
                         u32 width_px, u32 height_px) {
     session_frame_begin(&studio->session);

@@ -20,6 +20,8 @@ extern const u32 studio_level_count;
 // Fails the test if the level has errors or there is no device.
 void studio_open(Studio *studio, const char *level);
 void studio_close(Studio *studio);
+// The default settings without light that bounces: of tests whose bounds are those of direct light.
+RenderSettings studio_direct_light(void);
 // One picture by the settings; camera NULL = the player's.
 RenderImage studio_draw(Studio *studio, const char *camera, const RenderSettings *settings,
                         u32 width_px, u32 height_px);
