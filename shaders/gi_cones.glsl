@@ -188,7 +188,10 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
 GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
     float end = min(reach, gi_exit(start, direction));
     if (GI_CASCADES == 1u) {
-        float voxel = gi_flow.origin[0].w;
+        // Lanes that a fragment shader runs beside its pixels read 0 from storage buffers on the
+        // software driver. They must trace nothing: steps of no length would not end before the
+        // driver's limit of iterations does, which the pixels beside them share.
+        float voxel = max(gi_flow.origin[0].w, 1e-9);
         return gi_cone_single(start, direction, tan_half, first, end / voxel);
     }
     return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end, false);

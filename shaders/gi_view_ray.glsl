@@ -26,10 +26,12 @@ vec2 view_box(vec3 from, vec3 direction, vec3 low, vec3 high, out uint axis) {
     return vec2(max(enter, 0.0), min(min(far.x, far.y), far.z));
 }
 
+// Of the voxels' box. Lanes beside the pixels read 0 there (gi_cone, gi_cones.glsl): they miss it.
 vec2 view_grid(vec3 from, vec3 direction, out uint axis) {
     vec4 origin = gi_flow.origin[GI_CASCADES - 1u];
-    return view_box(from, direction, origin.xyz, origin.xyz + vec3(gi_flow.dims.xyz) * origin.w,
-                    axis);
+    vec2 range = view_box(from, direction, origin.xyz,
+                          origin.xyz + vec3(gi_flow.dims.xyz) * origin.w, axis);
+    return origin.w > 0.0 ? range : vec2(0.0, -1.0);
 }
 
 // The finest cascade that a place lies in (the last one, where it lies in none).
@@ -44,27 +46,51 @@ uint view_cascade(vec3 world) {
     return found;
 }
 
-// A cell of `side` voxels around a place, and how far the ray still is in it, m.
-struct ViewCell {
-    uint cascade, axis; // axis: of the side that it leaves through
-    vec3 inside;        // 0..1
-    ivec3 place;        // in cells
-    float rest;
+// A ray's way from cell to cell of `side` voxels (Amanatides and Woo 1987, "A fast voxel traversal
+// algorithm"): one neighbour after another, so that it cuts no corner and knows the side it came by.
+struct ViewWalk {
+    vec3 from, direction, inverse;
+    vec3 cells;   // of a cascade
+    float side, t; // t: length at which the ray enters the cell, m
+    uint cascade, axis; // axis: of the side that it enters through
+    vec3 place;   // in cells
 };
-ViewCell view_cell(vec3 world, vec3 direction, float side, vec3 cells) {
-    ViewCell cell;
-    cell.cascade = view_cascade(world);
-    vec4 origin = gi_flow.origin[cell.cascade];
-    vec3 q = (world - origin.xyz) / (origin.w * side);
-    vec3 low = clamp(floor(q), vec3(0.0), cells - 1.0);
-    vec3 border = low + mix(vec3(0.0), vec3(1.0), greaterThan(direction, vec3(0.0)));
-    vec3 way = (border - q) / view_safe(direction);
-    float rest = min(way.x, min(way.y, way.z));
-    cell.axis = way.x <= rest ? 0u : way.y <= rest ? 1u : 2u;
-    cell.inside = q - low;
-    cell.place = ivec3(low);
-    cell.rest = (max(rest, 0.0) + 1e-3) * side * origin.w; // a little beyond the border
-    return cell;
+void view_place(inout ViewWalk walk) {
+    vec3 world = walk.from + walk.direction * walk.t;
+    walk.cascade = view_cascade(world);
+    vec4 origin = gi_flow.origin[walk.cascade];
+    walk.place = clamp(floor((world - origin.xyz) / (origin.w * walk.side)), vec3(0.0),
+                       walk.cells - 1.0);
+}
+// t, axis: where the ray enters the grid.
+ViewWalk view_walk(vec3 from, vec3 direction, float side, vec3 cells, float t, uint axis) {
+    ViewWalk walk = ViewWalk(from, direction, 1.0 / view_safe(direction), cells, side, t, 0u, axis,
+                             vec3(0.0));
+    view_place(walk);
+    return walk;
+}
+void view_next(inout ViewWalk walk) {
+    vec4 origin = gi_flow.origin[walk.cascade];
+    float size = origin.w * walk.side;
+    vec3 ahead = vec3(greaterThan(walk.inverse, vec3(0.0)));
+    vec3 way = (origin.xyz + (walk.place + ahead) * size - walk.from) * walk.inverse;
+    float next = min(way.x, min(way.y, way.z));
+    walk.axis = way.x <= next ? 0u : way.y <= next ? 1u : 2u;
+    vec3 along = vec3(equal(uvec3(walk.axis), uvec3(0u, 1u, 2u)));
+    walk.place += along * (ahead * 2.0 - 1.0);
+    walk.t = max(next, walk.t);
+    if (GI_CASCADES == 1u) return;
+    float beyond = next + 1e-3 * size;
+    bool stays = view_cascade(walk.from + walk.direction * beyond) == walk.cascade;
+    ViewWalk other = walk;
+    other.t = beyond;
+    view_place(other);
+    walk.cascade = stays ? walk.cascade : other.cascade;
+    walk.place = stays ? walk.place : other.place;
+}
+// False: it left the grid.
+bool view_is_inside(ViewWalk walk) {
+    return all(greaterThanEqual(walk.place, vec3(0.0))) && all(lessThan(walk.place, walk.cells));
 }
 
 // As the picture shows radiance (tonemap.frag without its dither).

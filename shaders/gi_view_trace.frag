@@ -36,11 +36,12 @@ vec3 first_light(vec3 from, vec3 direction, bool is_on) {
     GiAxes axes = gi_axes(direction);
     uint axis;
     vec2 range = view_grid(from, direction, axis);
-    float t = gi_flow.origin[0].w * GI_START, end = is_on ? range.y : -1.0;
+    float end = is_on ? range.y : -1.0;
+    ViewWalk walk = view_walk(from, direction, 1.0, vec3(gi_flow.dims.xyz),
+                              gi_flow.origin[0].w * GI_START, axis);
     vec4 met = vec4(0.0);
-    for (uint i = 0u; i < VIEW_STEPS && t < end && met.a < 0.25; i++) {
-        ViewCell cell = view_cell(from + direction * t, direction, 1.0, vec3(gi_flow.dims.xyz));
-        ivec3 place = cell.place + ivec3(0, 0, int(gi_flow.dims.z * cell.cascade));
+    for (uint i = 0u; i < VIEW_STEPS && walk.t < end && met.a < 0.25; i++) {
+        ivec3 place = ivec3(walk.place) + ivec3(0, 0, int(gi_flow.dims.z * walk.cascade));
         if (GI_FACES == 0u) {
             met = texelFetch(gi_base, place, 0);
         } else {
@@ -49,7 +50,8 @@ vec3 first_light(vec3 from, vec3 direction, bool is_on) {
                   texelFetch(gi_atlas, place + ivec3(block.y, 0, 0), 0) * axes.weight.y +
                   texelFetch(gi_atlas, place + ivec3(block.z, 0, 0), 0) * axes.weight.z;
         }
-        t += cell.rest;
+        view_next(walk);
+        end = view_is_inside(walk) ? end : -1.0;
     }
     return gi_decode(met).rgb;
 }

@@ -59,31 +59,34 @@ vec3 voxel_color(ivec3 place, uint slot, uint block, bool is_solid) {
 vec3 first_voxel(vec3 eye, vec3 ray) {
     uint axis;
     vec2 range = view_grid(eye, ray, axis);
-    ViewCell cell;
+    ViewWalk walk = view_walk(eye, ray, 1.0, vec3(gi_flow.dims.xyz), range.x, axis);
     bool hit = false, is_solid = false;
-    float t = range.x + 1e-4;
-    for (uint i = 0u; i < VIEW_STEPS && t < range.y && !hit; i++) {
-        cell = view_cell(eye + ray * t, ray, 1.0, vec3(gi_flow.dims.xyz));
-        uint bit = gi_bit(uvec3(cell.place) + uvec3(0u, 0u, gi_flow.dims.z * cell.cascade));
+    for (uint i = 0u; i < VIEW_STEPS && walk.t < range.y && !hit; i++) {
+        uint bit = gi_bit(uvec3(walk.place) + uvec3(0u, 0u, gi_flow.dims.z * walk.cascade));
         hit = gi_occupied(bit);
         // What fills closed meshes shows where their surface was cut away by the camera.
         if ((GI_VISIBILITY & GI_VISIBILITY_SOLID) != 0u) {
             is_solid = !hit && gi_has(GI_MASK_SOLID, bit);
             hit = hit || is_solid;
         }
-        axis = hit ? axis : cell.axis;
-        t += hit ? 0.0 : cell.rest;
+        ViewWalk next = walk;
+        view_next(next);
+        if (hit) next = walk;
+        walk = next;
+        range.y = view_is_inside(walk) ? range.y : -1.0;
     }
     if (!hit) return NOTHING;
-    ivec3 place = cell.place + ivec3(0, 0, int(gi.dims.z * cell.cascade));
+    axis = walk.axis;
+    ivec3 place = ivec3(walk.place) + ivec3(0, 0, int(gi.dims.z * walk.cascade));
     uint slot = gi_slot(gi_bit(uvec3(place)));
     vec3 color = voxel_color(place, slot, met_block(axis, ray), is_solid);
     // Sides told apart, and the rim of each a little darker, unless voxels are as small as pixels.
     float side = axis == 1u ? 1.0 : axis == 0u ? 0.9 : 0.8;
-    vec3 rim = min(cell.inside, 1.0 - cell.inside);
+    vec3 inside = gi_to_voxels(eye + ray * walk.t, walk.cascade) - walk.place;
+    vec3 rim = min(inside, 1.0 - inside);
     rim = mix(rim, vec3(1.0), equal(uvec3(axis), uvec3(0u, 1u, 2u)));
-    float pixel = t * length(frame.ray_right.xyz) * frame.viewport.z * 2.0 /
-                  gi.origin[cell.cascade].w;
+    float pixel = walk.t * length(frame.ray_right.xyz) * frame.viewport.z * 2.0 /
+                  gi.origin[walk.cascade].w;
     bool is_rim = min(min(rim.x, rim.y), rim.z) < max(0.04, 0.5 * pixel) && pixel < 0.15;
     return color * side * (is_rim ? 0.72 : 1.0);
 }
@@ -96,12 +99,13 @@ vec3 filtered_cells(vec3 eye, vec3 ray) {
     ivec3 cells = max(ivec3(gi_flow.atlas.xyz) >> int(level), ivec3(1));
     float side = float(gi_flow.dims.y) / float(cells.y);
     vec4 sum = vec4(0.0);
-    float t = range.x + 1e-4;
-    for (uint i = 0u; i < VIEW_STEPS && t < range.y && sum.a < 0.98; i++) {
-        ViewCell cell = view_cell(eye + ray * t, ray, side, vec3(cells));
-        ivec3 texel = cell.place + ivec3(cells.x * int(block), 0, cells.z * int(cell.cascade));
+    ViewWalk walk = view_walk(eye, ray, side, vec3(cells), range.x, axis);
+    for (uint i = 0u; i < VIEW_STEPS && walk.t < range.y && sum.a < 0.98; i++) {
+        ivec3 texel = ivec3(walk.place);
+        texel += ivec3(cells.x * int(block), 0, cells.z * int(walk.cascade));
         sum += gi_decode(texelFetch(gi_atlas, texel, int(level))) * (1.0 - sum.a);
-        t += cell.rest;
+        view_next(walk);
+        range.y = view_is_inside(walk) ? range.y : -1.0;
     }
     return view_radiance(sum.rgb) + NOTHING * (1.0 - sum.a);
 }

@@ -1,6 +1,7 @@
 // gi_views.c: tests of the debug pictures of global illumination: each shows something, the same on
 // every run, and says so when there is nothing to show.
 #include "../golden/studio.h"
+#include <stdio.h>
 #include <string.h>
 
 #define WIDTH  128
@@ -96,6 +97,68 @@ TEST_GPU(gi_views, parts_of_indirect_light) {
     RenderImage image = draw(&studio, "view=gi_specular");
     mean_color(&image, 30, 70, 55, 95, c);
     assert_true(luminance(c) < 1.0);
+    studio_close(&studio);
+}
+
+// Pixels that stand out from the four around them, which agree, anywhere below the legend.
+static u32 specks(const RenderImage *image) {
+    u32 count = 0;
+    i32 width = (i32)image->width_px, height = (i32)image->height_px;
+    for (i32 y = height * 2 / 5; y < height - 1; y++)
+        for (i32 x = 1; x < width - 1; x++) {
+            const u8 *middle = image->rgba + 4 * (y * width + x);
+            const u8 *around[4] = {middle - 4, middle + 4, middle - 4 * width, middle + 4 * width};
+            bool is_speck = false, agree = true;
+            for (u32 k = 0; k < 3; k++) {
+                i32 low = 255, high = 0;
+                for (u32 i = 0; i < 4; i++) {
+                    low = MIN(low, around[i][k]);
+                    high = MAX(high, around[i][k]);
+                }
+                agree = agree && high - low <= 6;
+                is_speck = is_speck || middle[k] < low - 8 || middle[k] > high + 8;
+            }
+            count += is_speck && agree;
+        }
+    return count;
+}
+
+// A ray that cuts the corner between two voxels would show the wrong side of the next one, or fall
+// through.
+TEST_GPU(gi_views, voxels_have_no_specks) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    static const char *const lists[] = {"view=gi_voxels,gi.show=albedo,gi.grid=128",
+                                        "view=gi_voxels,gi.grid=64,gi.faces=apart"};
+    for (u32 i = 0; i < COUNT_OF(lists); i++) {
+        RenderSettings settings = gi_settings(lists[i]);
+        RenderImage image = studio_draw(&studio, "main", &settings, 320, 180);
+        u32 count = specks(&image);
+        printf("%s: %u specks\n", lists[i], count);
+        if (count > 0) fail_msg("%s: %u specks", lists[i], count);
+    }
+    studio_close(&studio);
+}
+
+// Blocks of pixels that a triangle covers in part run lanes whose pixels are not theirs: along the
+// line that the screen's triangle is cut in two by, and at the borders of odd sizes.
+TEST_GPU(gi_views, pixels_beside_the_triangle_stop_nobody) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    const u32 width = 642, height = 361; // the legend ends above the box
+    RenderSettings settings = gi_settings("view=gi_steps");
+    RenderImage image = studio_draw(&studio, "main", &settings, width, height);
+    // The front of the tall box, which that line crosses: cones take about as many steps all over.
+    u32 few = 0, most = 0;
+    for (u32 turn = 0; turn < 2; turn++)
+        for (u32 y = height * 48 / 100; y < height * 75 / 100; y++)
+            for (u32 x = width * 40 / 100; x < width * 48 / 100; x++) {
+                u32 green = image.rgba[4 * (y * width + x) + 1];
+                most = MAX(most, green);
+                few += turn && green < most * 3 / 5;
+            }
+    assert_true(most > 128);
+    if (few > 0) fail_msg("%u pixels' cones take few steps beside others' that take many", few);
     studio_close(&studio);
 }
 
