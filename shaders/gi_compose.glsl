@@ -1,15 +1,18 @@
-// gi_compose.glsl: adds indirect light to the lit picture, and takes ambient occlusion from it:
-// (direct + strength (diffuse + specular)) ao + emissive. The blend is there * alpha + colour.
+// gi_compose.glsl: what indirect light adds to the lit picture, and how much of that its ambient
+// occlusion leaves: (direct + strength (diffuse + specular)) ao + emissive = there * alpha + colour.
+// For gi_compose.comp and gi_compose_ms.frag.
 //
 // Where fewer pixels are traced than there are, each one takes from the four traced ones about it
 // those that lie in its plane and face its way (joint bilateral upsampling, Kopf et al. 2007).
-// Where none fits, it is traced by itself. GI_SAMPLES is defined by gi_compose_ms.frag.
+// Where none fits, it is traced by itself.
+#ifndef GI_COMPOSE_GLSL
+#define GI_COMPOSE_GLSL
 #include "gi_screen.glsl"
 
 layout(set = 2, binding = BINDING_GI_TRACE_0) uniform sampler2D trace_0;
 layout(set = 2, binding = BINDING_GI_TRACE_1) uniform sampler2D trace_1;
 
-layout(location = 0) out vec4 out_color;
+const int SIDE = 1 << GI_RESOLUTION; // pixels that a traced one stands for, along a side
 
 // What shines by itself, and is not occluded.
 vec3 emission(GbufferPixel g) {
@@ -17,139 +20,81 @@ vec3 emission(GbufferPixel g) {
     return max(g.accumulated - g.albedo * frame.ambient.rgb, vec3(0.0));
 }
 
-// What of a pixel tells whether two show the same surface: depth, and how alike two normals are, 1 to
-// less than 0. The lean layout's normals need no decoding for that: neighbours on the octahedron are
-// neighbours in its map, but for the seams about -z, where they count as strangers.
-float alike(GbufferPixel g, vec2 code, ivec2 other) {
-    if (LAYOUT == GBUFFER_LAYOUT_LEAN) {
-        vec2 apart = texelFetch(gbuffer_1, other, 0).xy - code;
-        return 1.0 - 12.0 * dot(apart, apart);
-    }
-    return dot(g.normal, gbuffer_read(other).normal) * 4.0 - 3.0;
-}
-
-// Along a pixel's ray a surface with normal n lies dot(n, ray) * near / depth before the eye: what
-// the traced pixels' surfaces have there in common with this one's is how far they are from its
-// plane. dot(n, ray) is linear over the screen.
-GiPixel upsample(ivec2 pixel, GbufferPixel g, Surface s) {
-    ivec2 last = ivec2(gi.trace.xy) - 1;
-    vec2 at = (vec2(pixel) - float((1 << GI_RESOLUTION) >> 1)) * (1.0 / float(1 << GI_RESOLUTION));
-    ivec2 low = ivec2(floor(at));
-    vec2 share = at - vec2(low);
-    // A plane's distance counts in voxels, or pixels where these are larger.
-    float view_depth = frame.camera.w / max(g.depth, 1e-9);
-    float footprint = view_depth * length(frame.ray_right.xyz) * frame.viewport.z * 2.0;
-    float tolerance = 1.0 / max(0.25 * gi.origin[0].w, 2.0 * footprint);
-    vec2 slope = vec2(dot(g.normal, frame.ray_right.xyz) * frame.viewport.z,
-                      -dot(g.normal, frame.ray_up.xyz) * frame.viewport.w) * 2.0;
-    float middle = dot(g.normal, pixel_ray(pixel));
-    vec2 code = texelFetch(gbuffer_1, pixel, 0).xy;
-    vec4 diffuse = vec4(0.0), specular = vec4(0.0);
-    float weight = 0.0, best = 0.0;
-    for (uint i = 0u; i < 4u; i++) {
-        ivec2 corner = ivec2(i & 1u, i >> 1);
-        ivec2 traced = clamp(low + corner, ivec2(0), last), other = gi_traced_pixel(traced);
-        float depth = texelFetch(gbuffer_depth, other, 0).x;
-        float along = middle + dot(slope, vec2(other - pixel));
-        float distance = abs(along * frame.camera.w / max(depth, 1e-9) - middle * view_depth);
-        float fits = clamp(2.0 - distance * tolerance, 0.0, 1.0) *
-                     clamp(alike(g, code, other), 0.0, 1.0);
-        fits = depth > 0.0 ? fits : 0.0;
-        vec2 near = mix(1.0 - share, share, vec2(corner)) + 0.02;
-        float w = near.x * near.y * fits;
-        diffuse += texelFetch(trace_0, traced, 0) * w;
-        if (gi_has_specular()) {
-            vec4 t = texelFetch(trace_1, traced, 0);
-            specular += vec4(t.rgb, 1.0) * (w * t.a);
-        }
-        weight += w;
-        best = max(best, fits);
-    }
-    GiPixel result = GiPixel(diffuse / max(weight, 1e-6),
-                             vec4(specular.rgb / max(specular.a, 1e-6), specular.a));
-    bool alone = g.depth > 0.0 && best < 0.25;
-    GiPixel own = gi_trace_pixel(g, s, uvec2(pixel), alone);
-    result.diffuse = alone ? own.diffuse : result.diffuse;
-    result.specular = alone ? own.specular : result.specular;
-    return result;
-}
-
-// Colour and ambient visibility of what a pixel of the G-buffer shows.
-vec4 compose(ivec2 pixel) {
-    GbufferPixel g = gbuffer_read(pixel);
-    Surface s = gbuffer_surface(g);
-    GiPixel light;
-    if (GI_RESOLUTION == 0u)
-        light = GiPixel(texelFetch(trace_0, pixel, 0), texelFetch(trace_1, pixel, 0));
-    else
-        light = upsample(pixel, g, s);
+// Colour and share of what is there.
+vec4 composed(GbufferPixel g, Surface s, GiPixel light) {
     vec3 indirect = g.albedo * light.diffuse.rgb;
     if (gi_has_specular()) indirect += gi_specular_color(s) * light.specular.rgb;
     indirect *= gi.strength.x * gbuffer_receives(g);
+    if ((GI_FEATURES & GI_FEATURE_AO) == 0u) return vec4(indirect, 1.0);
     float ao = light.diffuse.a;
-    vec3 color = indirect * ao + emission(g) * (1.0 - ao);
-    return g.depth > 0.0 ? vec4(color, ao) : vec4(0.0, 0.0, 0.0, 1.0);
+    return vec4(indirect * ao + emission(g) * (1.0 - ao), ao);
 }
 
-#ifdef GI_SAMPLES
-// --- Several samples a pixel, but one of the G-buffer's ---
-//
-// Where a pixel's samples show other surfaces than its middle, each sample takes the light of the
-// pixel about it whose plane it lies in, and the pixel gets their mean. Samples of the sky do not
-// count: it is drawn over them later.
-
-layout(set = 0, binding = BINDING_DEPTH_MS) uniform sampler2DMS depth_ms;
-
-// Vulkan's standard sample locations.
-const vec2 SAMPLE_AT[4] = vec2[](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625),
-                                 vec2(0.625, 0.875));
-
-float plane_distance(GbufferPixel g, vec3 position) {
-    return g.depth > 0.0 ? abs(dot(g.normal, position - g.position)) : 1e9;
-}
-vec3 sample_position(ivec2 pixel, int at, out bool is_sky) {
-    float depth = texelFetch(depth_ms, pixel, at).x;
-    is_sky = depth <= 0.0;
-    return position_from_depth(vec2(pixel) + SAMPLE_AT[at], depth);
+GiPixel traced_light(ivec2 traced) {
+    vec4 specular = gi_has_specular() ? texelFetch(trace_1, traced, 0) : vec4(0.0);
+    return GiPixel(texelFetch(trace_0, traced, 0), specular);
 }
 
-vec4 compose_samples(ivec2 pixel) {
-    GbufferPixel g = gbuffer_read(pixel);
-    float per_depth = length(frame.ray_right.xyz) * frame.viewport.z * 2.0;
-    float tolerance = 0.25 * per_depth * frame.camera.w / max(g.depth, 1e-9);
-    bool is_edge = false, is_sky;
-    for (int i = 0; i < 4; i++) {
-        vec3 position = sample_position(pixel, i, is_sky);
-        is_edge = is_edge || (!is_sky && plane_distance(g, position) > tolerance);
-    }
-    ivec2 last = ivec2(frame.viewport.xy) - 1;
-    vec4 sum = vec4(0.0);
-    float count = 0.0;
-    for (int i = 0; i < (is_edge ? 4 : 1); i++) {
-        vec3 position = sample_position(pixel, i, is_sky);
-        ivec2 found = pixel;
-        float nearest = 1e8;
-        for (int k = 0; k < (is_edge ? 9 : 0); k++) { // its own first, then all around
-            int n = k == 0 ? 4 : k == 4 ? 0 : k;
-            ivec2 other = clamp(pixel + ivec2(n % 3, n / 3) - 1, ivec2(0), last);
-            float distance = plane_distance(gbuffer_read(other), position);
-            found = distance < nearest ? other : found;
-            nearest = min(nearest, distance);
-        }
-        bool counts = !is_edge || (!is_sky && nearest < 1e8);
-        vec4 light = compose(found);
-        sum += counts ? light : vec4(0.0);
-        count += counts ? 1.0 : 0.0;
-    }
-    return count > 0.0 ? sum / count : vec4(0.0, 0.0, 0.0, 1.0);
+// --- Upsampling ---
+
+// The surface that a pixel shows, as much as it takes to compare two. A pixel's place is seen from
+// the eye; the sky has no normal.
+struct Place {
+    vec3 at, normal;
+};
+Place place_of(ivec2 pixel, GbufferPixel g) {
+    vec3 at = pixel_ray(pixel) * (frame.camera.w / max(g.depth, 1e-9));
+    return Place(at, g.depth > 0.0 ? g.normal : vec3(0.0));
+}
+
+struct Tap {
+    GiPixel light;
+    Place place;
+};
+Tap tap_read(ivec2 traced) {
+    traced = clamp(traced, ivec2(0), ivec2(gi.trace.xy) - 1);
+    ivec2 pixel = gi_traced_pixel(traced);
+    return Tap(traced_light(traced), place_of(pixel, gbuffer_read(pixel)));
+}
+
+// A sum over taps.
+struct Blend {
+    vec4 diffuse, specular;
+    float weight, best;
+};
+// height: of the pixel's plane over the eye; near: how near the tap is on the screen.
+void blend_tap(inout Blend sum, Tap tap, vec3 normal, float height, float tolerance, float near) {
+    float distance = abs(dot(normal, tap.place.at) - height);
+    float fits = clamp(2.0 - distance * tolerance, 0.0, 1.0) *
+                 clamp(dot(normal, tap.place.normal) * 4.0 - 3.0, 0.0, 1.0);
+    float w = near * fits;
+    sum.diffuse += tap.light.diffuse * w;
+    if (gi_has_specular())
+        sum.specular += vec4(tap.light.specular.rgb, 1.0) * (w * tap.light.specular.a);
+    sum.weight += w;
+    sum.best = max(sum.best, fits);
+}
+
+// The first of the four traced pixels about one.
+ivec2 first_tap(ivec2 pixel) { return (pixel + SIDE - (SIDE >> 1)) / SIDE - 1; }
+
+// alone: nothing fits.
+GiPixel upsample(ivec2 pixel, GbufferPixel g, Tap t00, Tap t10, Tap t01, Tap t11, out bool alone) {
+    Place place = place_of(pixel, g);
+    // A plane's distance counts in voxels, or pixels where these are larger.
+    float footprint = frame.camera.w / max(g.depth, 1e-9) * length(frame.ray_right.xyz) *
+                      frame.viewport.z * 2.0;
+    float tolerance = 1.0 / max(0.25 * gi.origin[0].w, 2.0 * footprint);
+    float height = dot(place.normal, place.at);
+    vec2 within = vec2((pixel + SIDE - (SIDE >> 1)) & (SIDE - 1)) * (1.0 / float(SIDE));
+    vec2 high = within + 0.02, low = 1.02 - within;
+    Blend sum = Blend(vec4(0.0), vec4(0.0), 0.0, 0.0);
+    blend_tap(sum, t00, place.normal, height, tolerance, low.x * low.y);
+    blend_tap(sum, t10, place.normal, height, tolerance, high.x * low.y);
+    blend_tap(sum, t01, place.normal, height, tolerance, low.x * high.y);
+    blend_tap(sum, t11, place.normal, height, tolerance, high.x * high.y);
+    alone = g.depth > 0.0 && sum.best < 0.25;
+    return GiPixel(sum.diffuse / max(sum.weight, 1e-6),
+                   vec4(sum.specular.rgb / max(sum.specular.a, 1e-6), sum.specular.a));
 }
 #endif
-
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-#ifdef GI_SAMPLES
-    out_color = compose_samples(pixel);
-#else
-    out_color = compose(pixel);
-#endif
-}

@@ -35,7 +35,7 @@ typedef struct GiScene {
     X(gather, "probes or irradiance", "probes|voxel irradiance")                                   \
     X(trace, "cones", "gi trace")                                                                  \
     X(shadows, "traced lights", "gi traced lights")                                                \
-    X(compose, "compose", "gi compose")
+    X(compose, "compose", "gi compose|gi compose of samples")
 typedef enum GiStep {
 #define X(id, title, passes) GI_STEP_##id,
     GI_STEPS(X)

@@ -61,16 +61,38 @@ const Pass gi_trace_pass = {"gi trace",
                             trace_record,
                             gi_is_on};
 
-static void compose_record(const PassContext *c) {
-    draw_over(c, c->renderer->samples > 1 ? PIPELINE_GI_COMPOSE_MS : PIPELINE_GI_COMPOSE);
+// With one sample a pixel by squares of pixels between the same traced ones.
+static bool compose_needed(const PassContext *c) {
+    return gi_is_on(c) && c->renderer->samples == 1;
 }
+static void compose_record(const PassContext *c) {
+    GpuPipeline pipeline =
+        pipeline_get(c->renderer, c->packet, PIPELINE_GI_COMPOSE, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    gi_bind_screen(c, pipeline);
+    const GiRecord *gi = &c->packet->gi.record;
+    u32 squares[2]; // those at the border begin half a square before it
+    for (u32 i = 0; i < 2; i++)
+        squares[i] = (u32)gi->trace[i] + (c->packet->gi.params.resolution != GI_RESOLUTION_FULL);
+    gpu_cmd_dispatch(c->cmd, (squares[0] + 7) / 8, (squares[1] + 7) / 8, 1);
+}
+#define COMPOSE_READS(stage)                                                                       \
+    USE_GBUFFER(stage), USE(GI_TRACE_0, stage), USE(GI_TRACE_1, stage), USE(GI_BASE, stage),       \
+        USE(GI_ATLAS, stage), USE(GI_IRRADIANCE, stage), USE(GI_PROBES, stage)
 const Pass gi_compose_pass = {
     "gi compose",
-    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
-     USE(DEPTH, DEPTH_TEST), USE(DEPTH_MS, DEPTH_TEST), USE(GI_TRACE_0, SAMPLED_FRAGMENT),
-     USE(GI_TRACE_1, SAMPLED_FRAGMENT), USE(GI_BASE, SAMPLED_FRAGMENT),
-     USE(GI_ATLAS, SAMPLED_FRAGMENT), USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
-     USE(GI_PROBES, SAMPLED_FRAGMENT)},
-    15,
+    {USE(HDR, STORAGE_COMPUTE), USE(DEPTH, SAMPLED_COMPUTE), COMPOSE_READS(SAMPLED_COMPUTE)},
+    13,
     compose_record,
-    gi_is_on};
+    compose_needed};
+
+static bool compose_ms_needed(const PassContext *c) {
+    return gi_is_on(c) && c->renderer->samples > 1;
+}
+static void compose_ms_record(const PassContext *c) { draw_over(c, PIPELINE_GI_COMPOSE_MS); }
+const Pass gi_compose_ms_pass = {"gi compose of samples",
+                                 {USE(HDR_MS, COLOR_TARGET), USE(DEPTH, SAMPLED_FRAGMENT),
+                                  USE(DEPTH_MS, DEPTH_TEST), COMPOSE_READS(SAMPLED_FRAGMENT)},
+                                 14,
+                                 compose_ms_record,
+                                 compose_ms_needed};

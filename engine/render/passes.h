@@ -74,8 +74,9 @@ extern const Pass gi_report_pass;
         &gi_bounce_pass, &gi_refilter_pass, &gi_irradiance_pass, &gi_probes_pass, &gi_report_pass
 // gi_screen.c: from lit surfaces to such with indirect light. Forward paths have no G-buffer of
 // their own: gi_gbuffer_pass draws one.
-extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_compose_pass;
-#define GI_SCREEN_PASSES &gi_traced_pass, &gi_trace_pass, &gi_compose_pass
+extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_compose_pass,
+    gi_compose_ms_pass;
+#define GI_SCREEN_PASSES &gi_traced_pass, &gi_trace_pass, &gi_compose_pass, &gi_compose_ms_pass
 // gi_views.c
 extern const Pass gi_view_pass;
 // post.c

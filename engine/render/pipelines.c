@@ -440,16 +440,20 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_GI_TRACE] = {.label = "gi trace",
                            .compute = "gi_trace.comp",
                            .spec_mask = SPEC_READ_VOXELS},
-#define GI_COMPOSE(label_, fragment_)                                                              \
-    {                                                                                              \
-        .label = label_, .vertex = "surfaces.vert", .fragment = fragment_,                         \
-        .targets = {RESOURCE_HDR}, .target_count = 1, .may_be_ms = true, .has_depth = true,        \
-        .depth = GPU_DEPTH_BEHIND, .cull = GPU_CULL_NONE, .blend = GPU_BLEND_SCALE_ADD,            \
-        .spec_mask = SPEC_READ_VOXELS                                                              \
-    }
-    [PIPELINE_GI_COMPOSE] = GI_COMPOSE("gi compose", "gi_compose.frag"),
-    [PIPELINE_GI_COMPOSE_MS] = GI_COMPOSE("gi compose of samples", "gi_compose_ms.frag"),
-#undef GI_COMPOSE
+    [PIPELINE_GI_COMPOSE] = {.label = "gi compose",
+                             .compute = "gi_compose.comp",
+                             .spec_mask = SPEC_READ_VOXELS},
+    [PIPELINE_GI_COMPOSE_MS] = {.label = "gi compose of samples",
+                                .vertex = "surfaces.vert",
+                                .fragment = "gi_compose_ms.frag",
+                                .targets = {RESOURCE_HDR},
+                                .target_count = 1,
+                                .may_be_ms = true,
+                                .has_depth = true,
+                                .depth = GPU_DEPTH_BEHIND,
+                                .cull = GPU_CULL_NONE,
+                                .blend = GPU_BLEND_SCALE_ADD,
+                                .spec_mask = SPEC_READ_VOXELS},
     [PIPELINE_GI_VIEW_VOXELS] = {.label = "gi view voxels",
                                  .vertex = "fullscreen.vert",
                                  .fragment = "gi_view_voxels.frag",

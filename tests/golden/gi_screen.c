@@ -134,11 +134,12 @@ TEST_GPU(golden, gi_with_samples) {
     studio_open(&studio, "data/levels/cornell.toml");
     session_advance(&studio.session, 30);
     static const char *const paths[] = {"forward", "tiled_forward", "clustered_forward"};
+    // One sample: a square of pixels at a time. Four: pixel by pixel.
+    static const char *const resolutions[] = {"full", "half", "quarter"};
     for (u32 p = 0; p < COUNT_OF(paths); p++)
-        for (u32 half = 0; half < 2; half++) {
+        for (u32 r = 0; r < COUNT_OF(resolutions); r++) {
             char one[128], four[160];
-            const char *resolution = half ? "half" : "full";
-            snprintf(one, sizeof one, "%s,%s,gi.resolution=%s", paths[p], GI, resolution);
+            snprintf(one, sizeof one, "%s,%s,gi.resolution=%s", paths[p], GI, resolutions[r]);
             snprintf(four, sizeof four, "%s,msaa=4", one);
             RenderImage a = draw(&studio, one, WIDTH, HEIGHT);
             RenderImage b = draw(&studio, four, WIDTH, HEIGHT);
