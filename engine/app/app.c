@@ -101,7 +101,7 @@ void app_close_device(App *app) {
     if (app->gpu) gpu_destroy(app->gpu);
     app->renderer = NULL;
     app->gpu = NULL;
-    app->assets_in_use = app->assets_warm = 0;
+    app->assets_in_use = 0;
 }
 
 bool app_upload_assets(App *app) {

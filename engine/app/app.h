@@ -102,7 +102,6 @@ struct App {
     Gpu *gpu; // NULL until app_open_device
     Renderer *renderer;
     u64 assets_in_use; // AssetStore.stamp that the renderer holds
-    u64 assets_warm;   // AssetStore.stamp whose pipelines were all made
 
     // What is looked through, and what is shown over the picture.
     char camera[128]; // "" = the player's eyes

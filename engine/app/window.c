@@ -26,7 +26,10 @@ extern int glfwCreateWindowSurface(void *vk_instance, GLFWwindow *window, const 
 #define RESIZE_RETRY_MS       20.0
 #define RESIZE_FAILURES_MAX   50    // then the device is made anew
 #define SPLIT_GRAB_SHARE      0.02f // so near to the line a free pointer drags it
-#define DEVICE_LOSSES_MAX     3     // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
+#define BAR_AFTER_MS          150.0 // what is prepared in less shows no bar
+#define BAR_EVERY_MS          50.0
+#define WARM_KEYS             64 // settings whose pipelines are known to be there
+#define DEVICE_LOSSES_MAX     3  // within DEVICE_LOSS_WINDOW_MS: then the driver is hopeless
 #define DEVICE_LOSS_WINDOW_MS 10000.0
 
 typedef struct Window {
@@ -43,6 +46,9 @@ typedef struct Window {
     int restore_x, restore_y, restore_width, restore_height; // before full screen
     f64 frame_start_ms, wait_ms; // waited for the device or the screen this frame
     u64 frame_count;
+    u64 warm_keys[WARM_KEYS]; // settings_switches_hash, the newest ones
+    u32 warm_count;
+    f64 warm_start_ms, bar_ms;
     int exit_code;
 } Window;
 
@@ -205,7 +211,9 @@ static void draw_bar(Window *window, f32 share) {
     if (!make_swapchain(window)) return;
     u32 width, height;
     gpu_swapchain_size(gpu, &width, &height);
-    GpuCommands *cmd = gpu_frame_begin(gpu);
+    // A warm-up asks in the middle of a frame of its own.
+    bool is_inside = gpu_frame_is_open(gpu);
+    GpuCommands *cmd = is_inside ? gpu_frame_continue(gpu) : gpu_frame_begin(gpu);
     if (!cmd) return;
     if (gpu_swapchain_acquire(gpu, cmd)) {
         GpuRendering back = {.to_swapchain = true, .width = width, .height = height};
@@ -219,12 +227,20 @@ static void draw_bar(Window *window, f32 share) {
         gpu_cmd_begin_rendering(cmd, &bar);
         gpu_cmd_end_rendering(cmd);
     }
-    gpu_frame_end(gpu, true);
+    if (is_inside)
+        gpu_frame_continue(gpu);
+    else
+        gpu_frame_end(gpu, true);
     if (!gpu_swapchain_present(gpu)) window->must_resize = true;
 }
 
 static void on_progress(void *user, u32 done, u32 total, const char *what) {
     Window *window = user;
+    f64 now = clock_now_ms();
+    bool is_first = window->frame_count == 0;
+    if (!is_first && now - window->warm_start_ms < BAR_AFTER_MS) return;
+    if (now - window->bar_ms < BAR_EVERY_MS) return;
+    window->bar_ms = now;
     char title[256];
     snprintf(title, sizeof title, "%s: preparing %s (%u of %u)", window->app->desc.title, what,
              done, total);
@@ -233,23 +249,37 @@ static void on_progress(void *user, u32 done, u32 total, const char *what) {
     draw_bar(window, total ? (f32)done / (f32)total : 1.0f);
 }
 
-// Uploads the level; the first one also makes all pipelines, with a bar.
-static void prepare_level(Window *window) {
+// Uploads the level.
+static void skip_time(Window *window) {
     App *app = window->app;
-    u64 stamp = app->session.assets.stamp;
-    if (!app->session.world || app->assets_in_use == stamp) return;
-    if (!app_upload_assets(app)) app_say(app, "not everything fits into the device's memory");
-    if (!app->assets_warm) {
-        const Packet *packet = app_packet(app, app->desc.width_px, app->desc.height_px);
-        if (packet) renderer_warm_up(app->renderer, packet, on_progress, window);
-        glfwSetWindowTitle(window->handle, app->desc.title);
-    }
-    app->assets_warm = stamp;
     // None of this time was played.
     f64 now = clock_now_ms();
     step_clock_skip(&window->clock, now);
     app->next_status_ms = now + STATUS_MS;
     app->status_frames = 0;
+}
+
+static void prepare_level(Window *window) {
+    App *app = window->app;
+    u64 stamp = app->session.assets.stamp;
+    if (!app->session.world || app->assets_in_use == stamp) return;
+    if (!app_upload_assets(app)) app_say(app, "not everything fits into the device's memory");
+    window->warm_count = 0;
+    skip_time(window);
+}
+
+// Makes the pipelines of settings that are new, with a bar. False: there was nothing to do.
+static bool prepare_pipelines(Window *window, const Packet *packet) {
+    if (!packet) return false;
+    u64 key = settings_switches_hash(&packet->settings);
+    for (u32 i = 0; i < MIN(window->warm_count, WARM_KEYS); i++)
+        if (window->warm_keys[i] == key) return false;
+    window->warm_keys[window->warm_count++ % WARM_KEYS] = key;
+    window->warm_start_ms = clock_now_ms();
+    renderer_warm_up(window->app->renderer, packet, on_progress, window);
+    glfwSetWindowTitle(window->handle, window->app->desc.title);
+    skip_time(window);
+    return true;
 }
 
 // --- A frame ---
@@ -288,6 +318,8 @@ static bool draw(Window *window) {
     gpu_swapchain_size(gpu, &width, &height);
     const Packet *other, *packet = app_packets(app, width, height, &other);
     if (!packet) return false;
+    // Time has passed: the next frame shows what is true then.
+    if (prepare_pipelines(window, packet) || prepare_pipelines(window, other)) return false;
     bool pointer = !window->device.captured;
     const Overlay *overlay =
         window->ui_ready ? debug_ui_frame(window->ui, app, width, height, pointer) : NULL;
@@ -430,6 +462,7 @@ int app_run_window(App *app) {
         capture_mouse(window, !app->panel);
         choose_resolution(window);
         app->start_ms = clock_now_ms();
+        draw_bar(window, 0.0f); // the level takes its time to come up
     }
     while (ok && !window->quit && !glfwWindowShouldClose(window->handle) && !time_is_up(window))
         frame(window);

@@ -3,6 +3,7 @@
 // Data out: a RenderSettings whose every value is in range. Called by: shells, tools, packet_build
 // and packet_validate; any thread (no state). Does not: act on a setting; that is the renderer's.
 #include "settings.h"
+#include "../base/hash.h"
 #include "../base/log.h"
 #include <math.h>
 #include <stdio.h>
@@ -72,6 +73,17 @@ static f64 setting_read(const RenderSettings *settings, const SettingDesc *desc)
     u32 number;
     memcpy(&number, field, sizeof number);
     return number;
+}
+
+u64 settings_switches_hash(const RenderSettings *settings) {
+    u64 hash = 0;
+    for (u32 i = 0; i < render_setting_count; i++) {
+        const SettingDesc *desc = &render_setting_descs[i];
+        bool is_count = desc->type == SETTING_U32 && desc->group == SETTING_GROUP_GI;
+        if (desc->type != SETTING_BOOL && desc->type != SETTING_ENUM && !is_count) continue;
+        hash = hash_bytes((const u8 *)settings + desc->offset, sizeof(u32), hash);
+    }
+    return hash;
 }
 
 RenderSettings settings_default(void) {

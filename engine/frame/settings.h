@@ -306,6 +306,8 @@ extern const SettingDesc render_setting_descs[];
 extern const u32 render_setting_count;
 
 RenderSettings settings_default(void);
+// Of the words, the switches, and the counts of group GI: all that pipelines can hang on.
+u64 settings_switches_hash(const RenderSettings *settings);
 
 // What settings ask of the light grid.
 static inline u32 settings_tile_px(const RenderSettings *settings) {

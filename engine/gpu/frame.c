@@ -159,10 +159,12 @@ GpuCommands *gpu_frame_begin(Gpu *gpu) {
     return &gpu->commands;
 }
 
-bool gpu_frame_end(Gpu *gpu, bool wait) {
+bool gpu_frame_is_open(const Gpu *gpu) { return gpu->is_recording; }
+
+// Submits the slot's commands; the slot stays. 0 on failure.
+static u64 slot_submit(Gpu *gpu, GpuFrameSlot *slot) {
     LUZ_ASSERT(gpu->is_recording && !gpu->commands.is_rendering);
     LUZ_ASSERT(gpu->timer_depth == 0); // a timer was not ended
-    GpuFrameSlot *slot = &gpu->slots[gpu->frame_slot];
     GpuSwapchain *swap = &gpu->swap;
     bool shows = swap->is_awaited;
     if (shows) gpu_swapchain_finish(gpu);
@@ -170,8 +172,7 @@ bool gpu_frame_end(Gpu *gpu, bool wait) {
     // A finished submit alone does not make writes visible to the host (READBACK buffers).
     gpu_record_full_barrier(gpu, slot->buffer);
     gpu->is_recording = false;
-    gpu->frame_slot = (gpu->frame_slot + 1) % gpu->frame_count;
-    if (!GPU_CHECK(gpu, "frame", gpu->vk.vkEndCommandBuffer(slot->buffer))) return false;
+    if (!GPU_CHECK(gpu, "frame", gpu->vk.vkEndCommandBuffer(slot->buffer))) return 0;
 
     VkCommandBuffer buffers[2];
     u32 count = 0;
@@ -180,13 +181,26 @@ bool gpu_frame_end(Gpu *gpu, bool wait) {
     buffers[count++] = slot->buffer;
     u64 value = gpu_submit(gpu, buffers, count, shows ? slot->acquired : VK_NULL_HANDLE,
                            shows ? swap->rendered[swap->image_index] : VK_NULL_HANDLE);
-    if (!value) return false;
+    if (!value) return 0;
     if (uploads) gpu_uploads_submitted(gpu, value);
     slot->value = value;
     gpu_destroy_stamp(gpu, value);
+    return value;
+}
+
+bool gpu_frame_end(Gpu *gpu, bool wait) {
+    GpuFrameSlot *slot = &gpu->slots[gpu->frame_slot];
+    u64 value = slot_submit(gpu, slot);
+    gpu->frame_slot = (gpu->frame_slot + 1) % gpu->frame_count;
+    if (!value) return false;
     if (!wait) return true;
     if (!gpu_wait_value(gpu, value)) return false;
     gpu_destroy_collect(gpu, value);
     gpu_timers_collect(gpu, slot);
     return true;
+}
+
+GpuCommands *gpu_frame_continue(Gpu *gpu) {
+    GpuFrameSlot *slot = &gpu->slots[gpu->frame_slot];
+    return slot_submit(gpu, slot) ? gpu_frame_begin(gpu) : NULL;
 }

@@ -262,6 +262,11 @@ const char *gpu_shader_error(const Gpu *gpu);
 GpuCommands *gpu_frame_begin(Gpu *gpu);
 // Submits. wait: returns only when the GPU is done (read-backs and timers are then valid).
 bool gpu_frame_end(Gpu *gpu, bool wait);
+// Inside a frame: submits what was recorded so far, waits until it is done, and goes on in the same
+// slot (DYNAMIC buffers hold what they held). Not inside rendering or a timer. What was acquired of
+// the swapchain can then be presented. NULL if the device is lost: the frame is over.
+GpuCommands *gpu_frame_continue(Gpu *gpu);
+bool gpu_frame_is_open(const Gpu *gpu); // between begin and end
 u32 gpu_frame_slot(const Gpu *gpu); // 0..frames_in_flight-1 of the frame being recorded
 
 // What a pass does with a resource: stage, access and layout in one word.

@@ -181,11 +181,13 @@ static Ways choose_ways(const Layer *layer, const VoxelDraw *d, u32 cascade) {
 static PipelineVariant variant_of(const VoxelDraw *d, VoxelStep step) {
     const f32 *emissive = d->record->emissive;
     bool is_mask = d->material->alpha_mode == ALPHA_MODE_MASK;
-    u32 textures = d->material->albedo_texture && (is_mask || step == STEP_ADD) ? 1 : 0;
-    if (step == STEP_ADD) {
-        if (d->material->emissive_pass) textures |= 4;
-        if (emissive[0] > 0.0f || emissive[1] > 0.0f || emissive[2] > 0.0f) textures |= 8;
-    }
+    // Each kind is among the longest of all shaders to compile, so there are few: without a texture
+    // its stand-in is white, and an emission or its texture that is not there is black or nothing.
+    bool glows = d->material->emissive_pass || emissive[0] > 0.0f || emissive[1] > 0.0f ||
+                 emissive[2] > 0.0f;
+    u32 textures = 0;
+    if (step == STEP_ADD) textures = glows ? 1 | 4 | 8 : 1;
+    if (step == STEP_MARK && is_mask && d->material->albedo_texture) textures = 1;
     return (PipelineVariant){.alpha_mask = is_mask, .textures = textures, .post = step};
 }
 

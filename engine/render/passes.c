@@ -34,9 +34,42 @@ static GpuPipeline variant_pipeline(const PassContext *c, PipelineKind kind, boo
     return pipeline;
 }
 
+enum { ALPHA_MODE_MASK = 1, ALPHA_MODE_BLEND = 2 }; // AlphaMode of world/components.h
+
+// Warming up: what lists of this kind may draw in another frame, a triangle with each of the
+// level's materials. Shadow maps stay as they are: they are kept, and hang on no view.
+static void draw_unseen(const PassContext *c, PipelineKind kind, bool alpha_mask, u32 variants,
+                        const void *push, u32 push_size) {
+    Renderer *r = c->renderer;
+    const PacketMaterial *materials = PACKET_DATA(c->packet, material_bindings, PacketMaterial);
+    u32 mesh = 0;
+    while (mesh < r->mesh_count && r->meshes[mesh].lods[0].index_count == 0) mesh++;
+    if (kind == PIPELINE_SHADOW || kind == PIPELINE_SHADOW_MASK || mesh == r->mesh_count ||
+        c->packet->instances.count == 0)
+        return;
+    GpuPipeline cache[VARIANTS] = {{0}};
+    for (u32 i = 0; i < c->packet->material_bindings.count * variants; i++) {
+        const PacketMaterial *material = &materials[i / variants];
+        bool is_drawn = kind == PIPELINE_FORWARD_BLEND ? material->alpha_mode == ALPHA_MODE_BLEND
+                        : kind == PIPELINE_EMISSIVE    ? material->emissive_pass
+                        : alpha_mask                   ? material->alpha_mode == ALPHA_MODE_MASK
+                                                       : material->alpha_mode != ALPHA_MODE_BLEND;
+        u32 count = r->pipeline_count;
+        GpuPipeline pipeline =
+            is_drawn ? variant_pipeline(c, kind, alpha_mask, material, i % variants, cache)
+                     : (GpuPipeline){0};
+        if (!pipeline.id || r->pipeline_count == count) continue; // it has been seen
+        bind_frame(c, pipeline);
+        if (push_size) gpu_cmd_push(c->cmd, push, push_size);
+        gpu_cmd_bind_group(c->cmd, 1, render_material_group(r, material));
+        gpu_cmd_draw_indexed(c->cmd, 3, 1, r->meshes[mesh].lods[0].first_index,
+                             r->meshes[mesh].vertex_offset, 0);
+    }
+}
+
 void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection section, bool alpha_mask,
                     const void *push, u32 push_size) {
-    if (section.count == 0) return;
+    if (section.count == 0 && !c->renderer->is_warming_up) return;
     Renderer *r = c->renderer;
     const PacketDraw *draws = (const PacketDraw *)((const u8 *)c->packet + section.offset);
     const PacketMaterial *materials = PACKET_DATA(c->packet, material_bindings, PacketMaterial);
@@ -73,6 +106,7 @@ void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection secti
         r->stats.draw_calls++;
         r->stats.triangles += lod->index_count / 3 * draw->instance_count;
     }
+    if (r->is_warming_up) draw_unseen(c, kind, alpha_mask, variants, push, push_size);
 }
 
 void draw_list(const PassContext *c, PipelineKind kind, PacketSection section, bool alpha_mask) {

@@ -2,9 +2,10 @@
 // it never sees the world, and a replayed packet takes the same way as a played one.
 //
 // Use: renderer_create; renderer_set_assets after each level load; renderer_warm_up with a first
-// packet (compiles all pipelines, with progress); then per frame either renderer_draw inside
-// gpu_frame_begin/end (window), or renderer_render_image (headless: draws, waits, reads back).
-// One thread. Does not: decide what is visible or which lights matter (systems/ does).
+// packet, and one of each change of settings (compiles their pipelines, with progress); then per
+// frame either renderer_draw inside gpu_frame_begin/end (window), or renderer_render_image
+// (headless: draws, waits, reads back). One thread. Does not: decide what is visible or which
+// lights matter (systems/ does).
 #ifndef LUZ_RENDER_H
 #define LUZ_RENDER_H
 #include "../asset/asset.h"
@@ -24,11 +25,13 @@ void renderer_destroy(Renderer *renderer);
 // Uploads meshes, textures; nothing to do if the store's stamp is the one in use. False on out of
 // memory (LOG): the renderer then draws without the missing ones.
 bool renderer_set_assets(Renderer *renderer, const AssetStore *assets);
-// Makes and runs every pipeline that this packet's level can need, in all paths and views, so that
-// no later frame stalls (shaders compile at first use). Progress may be NULL.
+// Makes and runs every pipeline that this packet's level can need in the packet's path and view,
+// also for what is out of sight, so that no later frame with these settings stalls (shaders compile
+// at first use). A pass at a time; progress is called before each, inside an open frame, and may be
+// NULL.
 bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress progress,
                       void *user);
-// The same for the packet's own path and view only: what a single picture needs.
+// The same for what this very packet shows: what a single picture needs.
 bool renderer_warm_up_path(Renderer *renderer, const Packet *packet);
 
 // Triangles over the picture (debug UI): vertices of GPU_VERTEX_UI, in window pixels.

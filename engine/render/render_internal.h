@@ -345,6 +345,9 @@ struct Renderer {
     u32 samples;                   // a pixel, of this packet: 1, or 4 with the _MS targets
     u32 ms_width_px, ms_height_px; // of the _MS targets; 1 x 1 stand-ins at first
     bool is_warming_up;            // all variants of what is drawn run, the picture is nobody's
+    RenderProgress progress;       // asked before each pass while warming up; NULL = nobody
+    void *progress_user;
+    u32 progress_done, progress_total;
     GpuBuffer volume_vertices, volume_indices; // volumes.c: sphere, then cone
 
     // Per-frame buffers and the group over everything.

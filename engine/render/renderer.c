@@ -63,13 +63,30 @@ static void shadow_map_ready(const PassContext *c) {
     r->usage[RESOURCE_SHADOW_MAP] = GPU_USAGE_SAMPLED_FRAGMENT;
 }
 
+// Tells how far the warm-up is; what compiles in a pass then does so in a submit of its own.
+static bool warm_up_step(PassContext *context, const Pass *next, u32 done, u32 total) {
+    Renderer *renderer = context->renderer;
+    // Another round, for larger buffers, compiles nothing.
+    renderer->progress_done = MAX(renderer->progress_done, done);
+    renderer->progress_total = total;
+    context->cmd = gpu_frame_continue(renderer->gpu);
+    if (context->cmd && renderer->progress)
+        renderer->progress(renderer->progress_user, renderer->progress_done, total, next->name);
+    return context->cmd && gpu_frame_is_open(renderer->gpu);
+}
+
 bool packet_draw(Renderer *renderer, GpuCommands *cmd, const Packet *packet) {
     if (!frame_upload(renderer, packet)) return false;
     PassContext context = {.renderer = renderer, .cmd = cmd, .packet = packet};
     shadow_map_ready(&context);
     const PathRow *path = path_of(packet);
-    for (u32 i = 0; i < PATH_PASSES_CAP && path->passes[i]; i++)
+    u32 count = 0;
+    while (count < PATH_PASSES_CAP && path->passes[count]) count++;
+    for (u32 i = 0; i < count; i++) {
+        if (renderer->is_warming_up && !warm_up_step(&context, path->passes[i], i, count))
+            return false;
         pass_run(&context, path->passes[i]);
+    }
     pass_run(&context, &debug_overlay_pass);
     device_lists_stats(renderer, packet);
     return true;
@@ -111,6 +128,7 @@ static bool draw_once(Renderer *renderer, const Packet *packet, const Packet *ot
         renderer->usage[RESOURCE_LDR] = GPU_USAGE_COPY_SOURCE;
         gpu_cmd_copy_texture_to_buffer(cmd, renderer->targets[RESOURCE_LDR], renderer->readback);
     }
+    if (!gpu_frame_is_open(renderer->gpu)) return false; // lost while warming up
     // A frame that failed half-way is still submitted: the slot must come free.
     u32 slot = gpu_frame_slot(renderer->gpu);
     if (!gpu_frame_end(renderer->gpu, true) || !drawn) return false;
@@ -205,57 +223,30 @@ RendererStats renderer_stats(const Renderer *renderer) {
 
 // --- Warm-up: shaders compile when they first run (up to 150 ms each on the software driver) ---
 
-// Draws a copy of the packet with other settings; the picture is thrown away.
-static bool warm_up_with(Renderer *renderer, const Packet *packet, Arena *scratch,
-                         RenderSettings settings) {
-    u64 mark = arena_mark(scratch);
-    // Lists for another path may be missing: one layer of empty cells of its own serves them all.
-    u32 cell_count = packet->frame.grid[0] * packet->frame.grid[1];
-    u64 cells_at = ALIGN_UP(packet->size, CACHE_LINE), cells_size = cell_count * sizeof(CellRecord);
-    Packet *copy = arena_push(scratch, cells_at + cells_size, CACHE_LINE);
+bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress progress,
+                      void *user) {
+    Arena scratch;
+    if (!arena_create(&scratch, "warm-up", packet->size + MIB(1))) return false;
+    Packet *copy = arena_push(&scratch, packet->size, CACHE_LINE);
     memcpy(copy, packet, packet->size);
-    copy->cells = (PacketSection){(u32)cells_at, cell_count};
-    copy->light_indices.count = 0;
+    // One light of each kind that is there (counting the dummy) and empty lists: thousands would
+    // make the slow paths' first frame take seconds, and the shaders compile just the same.
+    CellRecord *cells = (CellRecord *)((u8 *)copy + copy->cells.offset);
+    memset(cells, 0, copy->cells.count * sizeof *cells);
     copy->grid_nodes.count = 0;
-    copy->settings = settings;
-    // One light of each kind that is there (counting the dummy): thousands would make the slow
-    // paths' first frame take seconds, and the shaders compile just the same.
     copy->frame.counts[0] = 1;
     copy->frame.counts[1] = MIN(copy->frame.counts[1], 1);
     copy->frame.counts[3] = 0;
     for (u32 i = 0; i < 4; i++)
         copy->frame.counts3[i] = i < 2 ? MIN(copy->frame.counts3[i], copy->frame.counts[i]) : 0;
-    copy->frame.grid[2] = 1;
     renderer->is_warming_up = true;
+    renderer->progress = progress;
+    renderer->progress_user = user;
+    renderer->progress_done = 0;
     bool ok = renderer_render_image(renderer, copy, NULL, NULL);
     renderer->is_warming_up = false;
-    arena_rewind(scratch, mark);
-    return ok;
-}
-
-bool renderer_warm_up(Renderer *renderer, const Packet *packet, RenderProgress progress,
-                      void *user) {
-    Arena scratch;
-    u64 cells_size = (u64)packet->frame.grid[0] * packet->frame.grid[1] * sizeof(CellRecord);
-    if (!arena_create(&scratch, "warm-up", packet->size * 2 + cells_size + MIB(64))) return false;
-    u32 total = PATH_COUNT + VIEW_COUNT - 1, done = 0;
-    bool ok = true;
-    for (u32 path = 0; path < PATH_COUNT && ok; path++) {
-        RenderSettings settings = packet->settings;
-        settings.path = path;
-        settings.view = VIEW_FINAL;
-        if (progress) progress(user, done, total, path_table[path].name);
-        ok = warm_up_with(renderer, packet, &scratch, settings);
-        done++;
-    }
-    for (u32 view = VIEW_FINAL + 1; view < VIEW_COUNT && ok; view++) {
-        RenderSettings settings = packet->settings;
-        settings.view = view;
-        if (progress) progress(user, done, total, "debug views");
-        ok = warm_up_with(renderer, packet, &scratch, settings);
-        done++;
-    }
-    if (progress) progress(user, total, total, "ready");
+    renderer->progress = NULL;
+    if (ok && progress) progress(user, renderer->progress_total, renderer->progress_total, "ready");
     arena_destroy(&scratch);
     return ok;
 }

@@ -151,6 +151,18 @@ TEST_GPU(golden, debug_views_differ) {
     studio_close(&studio);
 }
 
+typedef struct Steps {
+    u32 calls, last;
+    bool is_ready, went_back;
+} Steps;
+static void count_step(void *user, u32 done, u32 total, const char *what) {
+    Steps *steps = user;
+    steps->calls++;
+    steps->went_back |= done < steps->last || done > total;
+    steps->last = done;
+    steps->is_ready = strcmp(what, "ready") == 0;
+}
+
 // Odd sizes cut tiles and groups; sizes change while running; the warm-up leaves no trace.
 TEST_GPU(golden, sizes_and_warm_up) {
     Studio studio;
@@ -164,10 +176,17 @@ TEST_GPU(golden, sizes_and_warm_up) {
             studio_draw(&studio, "main", &settings, sizes[i][0], sizes[i][1]);
         }
     settings = settings_default();
-    const Packet *packet = session_packet(
-        &studio.session,
-        &(SessionView){.camera = "main", .settings = settings, .width_px = 161, .height_px = 91});
-    assert_true(renderer_warm_up(studio.renderer, packet, NULL, NULL));
+    for (u32 path = PATH_COUNT; path-- > 0;) {
+        settings.path = path;
+        const Packet *packet = session_packet(&studio.session, &(SessionView){.camera = "main",
+                                                                              .settings = settings,
+                                                                              .width_px = 161,
+                                                                              .height_px = 91});
+        Steps steps = {0};
+        assert_true(renderer_warm_up(studio.renderer, packet, count_step, &steps));
+        assert_true(steps.calls > 3 && steps.is_ready && !steps.went_back);
+    }
+    settings = settings_default();
     u32 pipelines = renderer_stats(studio.renderer).pipelines;
     RenderImage last = studio_draw(&studio, "main", &settings, 161, 91);
     assert_true(first.hash == last.hash);
