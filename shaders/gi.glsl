@@ -220,13 +220,13 @@ float gi_atlas_lod() { return GI_FACES != 0u ? 0.0 : 1.0; } // lod of its level 
 // The blocks that face somebody who travels along a unit vector, and what each counts.
 struct GiAxes {
     vec3 block;  // of x, y, z: 0..5
-    vec3 weight; // sum 1
+    vec3 weight; // faces shared: sum 1; apart: how often a ray crosses faces of the axis
 };
 GiAxes gi_axes(vec3 direction) {
     GiAxes axes;
     axes.block = vec3(direction.x < 0.0 ? 0.0 : 1.0, direction.y < 0.0 ? 2.0 : 3.0,
                       direction.z < 0.0 ? 4.0 : 5.0);
-    axes.weight = direction * direction;
+    axes.weight = GI_FACES != 0u ? abs(direction) : direction * direction;
     return axes;
 }
 

@@ -15,17 +15,22 @@
 // the lod is whole: see gi_cone_growth). What does not
 // change along a cone is made before, and all that steers a loop comes from gi_flow.
 //
-// With faces apart walls hold light back. What is blended must lie within the cone: texels as wide as
-// the steps, with the usual step factor a third of the cone's width (linear filtering reaches 1.5 of
-// them to each side). And surfaces must be opaque: of a wall that a cone meets at an angle the blocks
-// of some axes alone know, so a sample counts GI_DENSER times, up to opaque. Smaller steps leak less.
+// With faces apart walls hold light back. What is blended must lie within the cone: texels narrower
+// than it, with the usual step factor a fifth of its width (linear filtering reaches 1.5 of them to
+// each side: wider ones show what lies beside the walls that the cone passed). No layer of them may
+// be stepped over: a wall is at least a texel thick at any level, and of two samples 1.5 texels apart
+// one at least is within 0.75 of its middle, so what they see of it, times GI_DENSER, leaves less
+// than a tenth. And surfaces must be opaque at any angle: a ray crosses |d| faces a voxel of an axis
+// that its direction has d of, so that is what the axis' block counts, not d squared (gi_axes).
+// Smaller steps leak less.
 #ifndef GI_CONES_GLSL
 #define GI_CONES_GLSL
 
 const float GI_START = 1.0;  // voxels from the apex to the first sample
 const float GI_OPAQUE = 0.95; // as good as 1
-const float GI_DENSER = 3.0;
+const float GI_DENSER = 3.0;      // what a sample counts, up to opaque
 const float GI_CLOSER = 2.0 / 3.0; // on the step factor
+const float GI_FINER = 2.0 / 3.0;  // texels as wide as so many steps
 const float GI_CLOSEST = GI_FACES != 0u ? 1.0 / 3.0 : 0.0; // voxels, a step at least
 
 struct GiCone {
@@ -74,7 +79,7 @@ float gi_cone_factor() {
 }
 // Lod of a sample of this diameter (voxels, at least 1).
 float gi_cone_lod(float diameter) {
-    float width = GI_FACES != 0u ? diameter * min(gi_cone_factor(), 1.0) : diameter;
+    float width = GI_FACES != 0u ? diameter * min(gi_cone_factor(), 1.0) * GI_FINER : diameter;
     return max(log2(width), 0.0);
 }
 

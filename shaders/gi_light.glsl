@@ -164,9 +164,7 @@ void add_directionals() {
 // --- The result ---
 
 void store_face(uint slot, uint f, vec3 sent) {
-    // From behind a face is dark, not clear.
-    float opacity = max(voxel_face(f), voxel_face(f ^ 1u));
-    gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity));
+    gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity[f >> 1]));
 }
 
 void store(uint slot) {

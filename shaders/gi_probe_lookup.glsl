@@ -24,8 +24,10 @@ GiProbeLight gi_probe_light(vec3 world, vec3 normal, uint count) {
     vec3 last = vec3(gi.probes.xyz) - 2.0;
     vec3 seat = place + normal * GI_PROBE_OFFSET;
     vec3 low = clamp(floor(seat), vec3(0.0), last), share = clamp(seat - low, 0.0, 1.0);
-    // A surface is anywhere in its voxel.
-    float slack = gi.origin[GI_CASCADES - 1u].w * per_metre + GI_PROBE_STEP;
+    // A surface is anywhere in its voxel: along its normal. Across it its own voxels are in nobody's
+    // way, but those of a wall that it ends at.
+    vec3 slack = gi.origin[GI_CASCADES - 1u].w * per_metre * max(abs(normal), vec3(0.5)) +
+                 GI_PROBE_STEP;
     vec3 weight = normal * normal;
     ivec3 block = ivec3(normal.x < 0.0 ? 1 : 0, normal.y < 0.0 ? 3 : 2, normal.z < 0.0 ? 5 : 4) *
                   int(gi.probes.x);
@@ -45,7 +47,7 @@ GiProbeLight gi_probe_light(vec3 world, vec3 normal, uint count) {
                          dot(vec3(cx.open, cy.open, cz.open), weight));
         vec3 free = vec3(way.x > 0.0 ? cx.up : cx.down, way.y > 0.0 ? cy.up : cy.down,
                          way.z > 0.0 ? cz.up : cz.down);
-        free += mix(vec3(slack), vec3(0.0), equal(free, vec3(0.0))); // 0: behind is wall
+        free += mix(slack, vec3(0.0), equal(free, vec3(0.0))); // 0: behind is wall
         vec3 seen = clamp((free - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
         float before = clamp(-dot(way, normal) * 8.0 + 0.25, 1e-4, 1.0);
         float valid = cx.up + cx.down > 0.0 ? 1.0 : 1e-6;

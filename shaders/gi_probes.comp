@@ -29,6 +29,11 @@ const vec3 CORNERS[12] =
            vec3(A, -B, 0), vec3(-A, B, 0), vec3(-A, -B, 0), vec3(B, 0, A), vec3(-B, 0, A),
            vec3(B, 0, -A), vec3(-B, 0, -A));
 
+// Voxels to a cone's first sample. A probe has no surface of its own to get away from, but with faces
+// apart what is behind a cone is opaque too: in a free voxel half a voxel is away from all voxels
+// behind, and passes no wall ahead.
+const float PROBE_START = GI_FACES != 0u ? 0.5 : GI_START;
+
 // Mean of max(cosine, 0) over a cone of 60 degrees whose axis has one of the three cosines that
 // occur, over their sum: 0.933 times the cosine, and 0.108 of a cone that is half behind.
 float cosine_share(float cosine) {
@@ -101,7 +106,7 @@ void main() {
     float reach = gi_reach(), tan_half = gi_flow.cone.x;
     for (uint i = 0u; i < 12u; i++) {
         vec3 direction = CORNERS[i];
-        GiCone cone = gi_cone(world, direction, tan_half, GI_START, reach);
+        GiCone cone = gi_cone(world, direction, tan_half, PROBE_START, reach);
         vec3 arrives = cone.light.rgb + GI_SKY(frame, direction) * max(1.0 - cone.light.a, 0.0);
         for (uint d = 0u; d < 6u; d++) {
             float share = cosine_share((d & 1u) == 0u ? direction[d >> 1] : -direction[d >> 1]);

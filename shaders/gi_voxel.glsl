@@ -13,6 +13,23 @@ uint cascade;
 // What its faces +x +y +z and -x -y -z count. apart: 1, down to 0 for faces that the surface hardly
 // has. shared: sum 1; normal^2 on the side of the normal, without one each face's share.
 vec3 ahead, behind;
+// apart: opacity along x, y, z, seen from either side: from behind a face is dark, not clear.
+vec3 opacity;
+
+// Is the next voxel towards that side (1, -1) of each axis occupied? 1 or 0; 0 beyond the box.
+vec3 voxel_beside(uvec3 place, int side) {
+    vec3 found = vec3(0.0);
+    uint low = cascade * gi.dims.z;
+    ivec3 last = ivec3(gi.dims.xyz) - 1;
+    for (int axis = 0; axis < 3; axis++) {
+        ivec3 at = ivec3(place.xy, place.z - low);
+        at[axis] = clamp(at[axis] + side, 0, last[axis]);
+        bool is_other = at != ivec3(place.xy, place.z - low);
+        bool is_there = gi_occupied(gi_bit(uvec3(at) + uvec3(0u, 0u, low)));
+        found[axis] = is_other && is_there ? 1.0 : 0.0;
+    }
+    return found;
+}
 
 void voxel_load(uint slot) {
     uvec3 place = gi_unpack_place(gi_voxels[slot]);
@@ -30,6 +47,15 @@ void voxel_load(uint slot) {
     if (GI_FACES != 0u) {
         ahead = min(ahead * (1.0 / GI_FACE_WHOLE), vec3(1.0));
         behind = min(behind * (1.0 / GI_FACE_WHOLE), vec3(1.0));
+        opacity = max(ahead, behind);
+        // The inside of a solid.
+        if (opacity == vec3(0.0)) opacity = vec3(1.0);
+        // Two bodies touch, a wall stands on a floor: opposite faces cancel out, and what is left of
+        // the normal lies across. What faces an occupied voxel then lies between the two and is
+        // hidden, though the voxel's outer side sees the light; lit, it would shine into the room.
+        vec3 touches = agrees ? min(ahead, behind) * step(abs(normal), vec3(0.3)) : vec3(0.0);
+        ahead *= 1.0 - ceil(touches) * voxel_beside(place, 1);
+        behind *= 1.0 - ceil(touches) * voxel_beside(place, -1);
     } else {
         float sum = max(dot(ahead + behind, vec3(1.0)), 1e-3);
         vec3 weight = normal * normal;

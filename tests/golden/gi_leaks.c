@@ -55,8 +55,9 @@ static void measure(Studio *studio, const char *preset, const char *list, f64 le
     printf("\n");
 }
 
-// Walls of three voxels let a thousandth through, of two a hundredth, thinner ones a third of what
-// comes through where a voxel has one radiance for both its sides.
+// With the steps that the presets take: walls of three voxels let a thousandth through, of two a
+// hundredth, thinner ones a third of what comes through where a voxel has one radiance for both its
+// sides.
 TEST_GPU(gi_leaks, sealed_rooms) {
     enum { HALF, ONE, TWO, THREE };
     Studio studio;
@@ -66,7 +67,7 @@ TEST_GPU(gi_leaks, sealed_rooms) {
     measure(&studio, "thesis", "gi.faces=apart", apart);
     measure(&studio, "thesis", "gi.faces=apart,gi.step_factor=0.2", fine);
     for (u32 r = 0; r < ROOMS; r++) assert_true(apart[r] < shared[r] / 3.0);
-    assert_true(apart[TWO] < 0.01 && apart[THREE] < 0.01);
+    assert_true(apart[TWO] < 0.01 && apart[THREE] < 0.001);
     assert_true(fine[TWO] < 0.001 && fine[THREE] < 0.001);
     studio_close(&studio);
 }
@@ -77,13 +78,13 @@ TEST_GPU(gi_leaks, formats_and_solid_voxels) {
     studio_open(&studio, "data/levels/sealed_room.toml");
     static const char *const lists[] = {
         "gi.faces=apart,gi.step_factor=0.2,gi.format=byte",
-        "gi.faces=apart,gi.step_factor=0.2,gi.solid=on",
+        "gi.faces=apart,gi.solid=on",
         "gi.faces=apart,gi.step_factor=0.2,gi.mips=nearest",
     };
     for (u32 i = 0; i < COUNT_OF(lists); i++) {
         f64 leaks[ROOMS];
         measure(&studio, "thesis", lists[i], leaks);
-        assert_true(leaks[0] < 0.05 && leaks[1] < 0.02 && leaks[2] < 0.001 && leaks[3] < 0.001);
+        assert_true(leaks[0] < 0.04 && leaks[1] < 0.02 && leaks[2] < 0.001 && leaks[3] < 0.001);
     }
     studio_close(&studio);
 }

@@ -9,8 +9,9 @@ static f32 clamp01(f32 x) { return CLAMP(x, 0.0f, 1.0f); }
 typedef struct Voxel {
     u32 cascade;
     f32 position[3], size;
-    f32 normal[3]; // unit or 0
-    f32 share[6];  // faces
+    f32 normal[3];  // unit or 0
+    f32 share[6];   // faces
+    bool beside[6]; // is the next voxel on that side occupied?
     f32 albedo[3], emission[3];
 } Voxel;
 
@@ -38,7 +39,26 @@ static Voxel unpack(const VoxelScene *stage, u32 slot) {
                                8 * (f & 3) &
                            255) /
                      255.0f;
+    for (u32 f = 0; f < 6; f++) {
+        const u32 *dims = stage->gi.dims;
+        u32 to[3] = {at[0], at[1], at[2]};
+        to[f / 2] += f % 2 ? ~0u : 1u;
+        if (to[f / 2] >= dims[f / 2]) continue;
+        u32 bit = to[0] + dims[0] * (to[1] + dims[1] * (to[2] + dims[2] * v.cascade));
+        u32 layer = dims[0] * dims[1] * dims[2] * dims[3] / 32;
+        u32 mask = stage->masks[GI_MASK_STATIC * layer + bit / 32] |
+                   stage->masks[GI_MASK_DYNAMIC * layer + bit / 32];
+        v.beside[f] = mask >> bit % 32 & 1;
+    }
     return v;
+}
+
+static f32 face_share(const Voxel *v, u32 f) { return MIN(v->share[f] * 16.0f, 1.0f); }
+
+// Where two bodies touch: opposite faces that cancel out, of those the ones towards other voxels.
+static bool is_hidden(const Voxel *v, u32 f) {
+    bool cancels = dot3(v->normal, v->normal) > 0.0f && fabsf(v->normal[f / 2]) <= 0.3f;
+    return cancels && v->share[f] > 0.0f && v->share[f ^ 1] > 0.0f && v->beside[f];
 }
 
 // What each face counts.
@@ -48,7 +68,7 @@ static void weigh(const VoxelScene *stage, const Voxel *v, f32 out[6]) {
     for (u32 f = 0; f < 6; f++) sum += v->share[f];
     for (u32 f = 0; f < 6; f++) {
         f32 n = v->normal[f / 2], toward = f % 2 ? -n : n;
-        out[f] = apart   ? MIN(v->share[f] * 16.0f, 1.0f)
+        out[f] = apart   ? (is_hidden(v, f) ? 0.0f : face_share(v, f))
                  : known ? (toward > 0.0f ? n * n : 0.0f)
                          : v->share[f] / MAX(sum, 1e-3f);
     }
@@ -211,8 +231,11 @@ LightSum light_twin(const VoxelScene *stage, u32 slot) {
         add(stage, &v, weight, l, c, &sum);
     }
     u32 faces = stage->spec[SPEC_GI_FACES] ? 6 : 1;
+    f32 most = 0.0f; // 0: the inside of a solid
+    for (u32 f = 0; f < 6; f++) most = MAX(most, face_share(&v, f));
     for (u32 f = 0; f < faces; f++) {
-        sum.opacity[f] = faces > 1 ? MAX(weight[f], weight[f ^ 1]) : 1.0f;
+        bool is_solid = faces == 1 || most == 0.0f;
+        sum.opacity[f] = is_solid ? 1.0f : MAX(face_share(&v, f), face_share(&v, f ^ 1));
         for (u32 k = 0; k < 3; k++) {
             f32 sent = v.emission[k] + v.albedo[k] * sum.face[f][k] * 0.318309886f;
             sum.face[f][k] = faces > 1 ? sent * weight[f] : sent;
