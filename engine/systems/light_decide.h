@@ -2,6 +2,7 @@
 //   light_scene.c     candidates, the reference view
 //   packet_lights.c   the packet's own view of them, records
 //   light_manager.c   the state: decisions in time
+//   light_fade.c      how fast they show
 //   light_merge.c     pairs that become one
 //   light_rank.c      dropping, budget, the decision as a whole
 //
@@ -104,6 +105,9 @@ f32 light_attenuation(const LightScene *scene, f32 d, f32 range);
 // Area of a sphere's picture in px of the reference picture, the screen's edges ignored; 1e30 for a
 // sphere that the eye is in.
 f32 light_area_px(const LightScene *scene, Vec3 center, f32 radius);
+// Radiance (before exposure's curve, 1 = what exposure makes 1) of the brightest pixel that the
+// row's light makes at its full intensity, about: on the nearest surface, if that is white.
+f32 light_brightest(const LightScene *scene, u32 row);
 // 0..1 of brightness that the drop stage leaves to a light of these measures.
 f32 light_drop_weight(const LightScene *scene, Vec3 center, f32 radius, Vec3 color, f32 range);
 

@@ -49,19 +49,6 @@ bool light_manager_knows(const LightManagerState *state, const World *world, Ent
            world->tick - state->tick < LIGHT_MANAGER_STEP;
 }
 
-static f32 fade(const LightSlot *slot, f32 from, f32 target, u32 ticks) {
-    f32 most = (f32)ticks / (f32)(slot->takes_place ? LIGHT_FADE_TICKS : LIGHT_WEIGHT_TICKS);
-    return from + CLAMP(target - from, -most, most);
-}
-
-f32 light_slot_weight(const LightSlot *slot, u32 ticks) {
-    return fade(slot, slot->weight, slot->target, ticks);
-}
-
-f32 light_slot_pair_weight(const LightSlot *slot, u32 ticks) {
-    return fade(slot, slot->pair_weight, slot->pair_target, ticks);
-}
-
 const LightSlot *light_slot(const LightManagerState *state, Entity entity) {
     u32 index = ENTITY_INDEX(entity);
     if (index >= state->slot_count || state->slots[index].entity != entity) return NULL;
@@ -196,6 +183,11 @@ static void step(LightManagerState *state, const World *world, const AssetStore 
         u32 other = d.partner[row];
         slot->takes_place =
             other != ROW_NONE && MIN(d.weight[row], d.weight[other]) + d.pair_weight[row] > 0.999f;
+        slot->in_step = slot->takes_place && slot->target + slot->pair_target == 1.0f &&
+                        fabsf(slot->weight + slot->pair_weight - 1.0f) < 1e-5f;
+        if (!at_once && (slot->weight != slot->target || slot->pair_weight != slot->pair_target))
+            slot->tail =
+                light_fade_tail(light_fade_brightest(&scene, row, other, slot->takes_place));
         if (!at_once) continue;
         slot->weight = slot->target;
         slot->pair_weight = slot->pair_target;

@@ -8,9 +8,9 @@
 //
 // Every LIGHT_MANAGER_STEP ticks the whole decision is taken anew (light_decide.h); what is decided
 // is a share of each light's brightness, and of each merged light's, and what is shown moves
-// towards it by 1 / LIGHT_WEIGHT_TICKS, 1 / LIGHT_FADE_TICKS a tick at most. Between two steps it is a function of the
-// tick, so the state says the same whatever frames were drawn. It depends on ticks and cameras
-// alone: not on settings, on the picture's size, or on threads.
+// towards it by LIGHT_FADE_RATE of itself a tick at most (light_fade.c). Between two steps it is a
+// function of the tick, so the state says the same whatever frames were drawn. It depends on ticks
+// and cameras alone: not on settings, on the picture's size, or on threads.
 //
 // A cut (another camera than the state has seen, a level just loaded, a tick that does not follow)
 // takes the decision at once and in full: the cut hides it.
@@ -21,12 +21,11 @@
 extern "C" {
 #endif
 
-#define LIGHT_MANAGER_STEP 6u  // ticks
-#define LIGHT_FADE_TICKS   40u // two thirds of a second: a pair becomes one, or two again
-// What drops out or comes back (too small, too faint, over the budget) has nothing that takes its
-// place, so it takes longer, two seconds: a wall that one light lights changes by 3 or 4 / 255 a tick.
-// Where a budget takes many at once it is up to 10.
-#define LIGHT_WEIGHT_TICKS 120u
+#define LIGHT_MANAGER_STEP 6u // ticks
+// The part of itself by which a share of brightness changes in a tick: no pixel of the picture by
+// more than 2.9 of 255, however many lights. A pair that nobody can tell from its merged light
+// takes a quarter of a second to become one, one at a wall two or three.
+#define LIGHT_FADE_RATE (1.0f / 16)
 
 LightManagerState *light_manager_create(void);
 void light_manager_destroy(LightManagerState *state); // NULL is fine

@@ -1,4 +1,5 @@
-// light_manager_state.h: the state's insides, for light_manager.c and packet_lights.c.
+// light_manager_state.h: the state's insides, for light_manager.c, light_fade.c and
+// packet_lights.c.
 #ifndef LUZ_LIGHT_MANAGER_STATE_H
 #define LUZ_LIGHT_MANAGER_STATE_H
 #include "light_decide.h"
@@ -11,7 +12,9 @@ typedef struct LightSlot {
     f32 pair_weight, pair_target; // of the merged light's; the same in both partners' slots
     f32 pair_error;
     u32 fate;         // LightDecision.fate
-    bool takes_place; // the shares move at a pair's pace; the same in both partners' slots
+    f32 tail;         // light_share_step; the same in both partners' slots
+    bool takes_place; // what one share loses another gains; the same in both partners' slots
+    bool in_step;     // and this light's share is what its pair's leaves of one, now and at the end
 } LightSlot;
 
 struct LightManagerState {
@@ -31,6 +34,18 @@ struct LightManagerState {
 
 // NULL if the state does not know this entity.
 const LightSlot *light_slot(const LightManagerState *state, Entity entity);
+
+// ---- light_fade.c ----
+
+// Radiance (1 = what exposure makes 1) of the brightest pixel that a change of the row's share, and
+// its partner's, can show. other: ROW_NONE = in no pair.
+f32 light_fade_brightest(const LightScene *scene, u32 row, u32 other, bool takes_place);
+// The slot's `tail` for shares of lights that are no brighter.
+f32 light_fade_tail(f32 brightest);
+// A share (0..1) a tick later, on its way to the target. It changes by the part LIGHT_FADE_RATE of
+// itself, or, where that is more, its square root changes by `tail`. takes_place: what it loses
+// another gains, and the other one changes by no larger part either.
+f32 light_share_step(f32 share, f32 target, f32 tail, bool takes_place);
 // A slot's shares `ticks` after the state's: its own and its pair's.
 f32 light_slot_weight(const LightSlot *slot, u32 ticks);
 f32 light_slot_pair_weight(const LightSlot *slot, u32 ticks);

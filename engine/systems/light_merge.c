@@ -22,7 +22,8 @@
 #define HELD_DISTANCE 0.9f
 #define HELD_RANGE    1.2f
 #define HELD_PEAK     4.0f
-// Largest predicted change of one pixel: a blend of 15 ticks must not show in any of them.
+// Largest predicted change of one pixel: pairs near a surface would look different, and blend
+// slowly (light_fade.c).
 #define PEAK_MAX           0.08f
 #define PEAK_SURFACE_MIN_M 0.1f
 // Where no surface is known, one is taken to pass a light at this part of its range, but not

@@ -13,6 +13,8 @@
 // A light's contribution is that on a surface so far away, or a pixel's width if that is more:
 // nothing nearer is resolved.
 #define CONTRIBUTION_AT_M 0.25f
+// A light in a cell that a surface passes through is taken to be so far from it.
+#define NEAREST_SURFACE_M 0.05f
 // Importance above that of the most important refused light, as a part of it, at which a light is
 // shown in full.
 #define BUDGET_BAND 0.25f
@@ -77,6 +79,19 @@ static f32 peak(const LightScene *scene, Vec3 center, f32 radius, Vec3 color, f3
     // A range that ends before: half of it.
     at = MIN(at, 0.5f * range);
     return brightest(color) * light_attenuation(scene, at, range) * scene->white;
+}
+
+f32 light_brightest(const LightScene *scene, u32 row) {
+    const LightTable *light = scene->light;
+    f32 range = light->reach[row];
+    Vec3 place = {light->x[row], light->y[row], light->z[row]};
+    f32 h = light_surface_distance(scene->surfaces, place, CONTRIBUTION_AT_M);
+    h = MIN(MAX(h, NEAREST_SURFACE_M), 0.5f * range);
+    // Not as bright as it is now: one that flickers is at its brightest soon.
+    f32 factor = light->intensity[row] * MAX(light->gain[row], 1.0f);
+    Vec3 color = {light->color_r[row], light->color_g[row], light->color_b[row]};
+    return 2.0f * scene->white * fabsf(factor) * brightest(color) *
+           light_attenuation(scene, h, range);
 }
 
 // 0 up to the threshold, 1 from twice the threshold on.

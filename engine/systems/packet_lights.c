@@ -144,13 +144,6 @@ static void decide(LightCull *cull, LightParts *parts, const u32 *rows, u32 row_
                                                                : cull->config.budget};
         cull->decision = light_decide(&scene, &how, own_ms, scratch);
     }
-    // Shares move evenly in time; eased they start and end gently, and two that add up to one still
-    // do: s(t) + s(1 - t) = 1.
-    for (u32 row = 0; row < cull->light->table.count; row++) {
-        cull->decision.weight[row] = f32_smoothstep(0.0f, 1.0f, cull->decision.weight[row]);
-        cull->decision.pair_weight[row] =
-            f32_smoothstep(0.0f, 1.0f, cull->decision.pair_weight[row]);
-    }
     for (u32 stage = LIGHT_STAGE_MERGE; stage <= LIGHT_STAGE_BUDGET; stage++)
         parts->stage_ms[stage] = ms[stage];
     lap_ms(clock_ms);

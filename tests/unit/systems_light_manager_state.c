@@ -6,7 +6,7 @@
 #include "../../engine/base/hash.h"
 #include "../../engine/base/jobs.h"
 #include "../../engine/base/random.h"
-#include "../../engine/systems/light_manager.h"
+#include "../../engine/systems/light_manager_state.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -66,14 +66,95 @@ TEST(systems_light_manager_state, a_pair_at_the_threshold_does_not_flicker) {
         before = weight;
     }
     assert_true(weight == 1.0f);
-    assert_in_range(changes, LIGHT_FADE_TICKS * 2 / 3, LIGHT_FADE_TICKS + 1);
+    printf("    in %u ticks\n", changes);
+    assert_in_range(changes, 12, 200);
     // Far apart it splits, and both are back.
     place_pair(f, pair, 1.9f);
-    for (u32 i = 0; i < 2 * LIGHT_FADE_TICKS; i++) tick(f, state, ENTITY_NONE);
+    for (u32 i = 0; i < 360; i++) tick(f, state, ENTITY_NONE);
     assert_int_equal(light_manager_partner(state, f->world, pair[0], &weight), ENTITY_NONE);
     for (u32 i = 0; i < 2; i++) assert_true(light_manager_weight(state, f->world, pair[i]) == 1.0f);
     light_manager_destroy(state);
     systems_fixture_destroy(f);
+}
+
+// ---- pace ----
+
+// What a pixel shows, 0..255.
+static f64 shown(f64 radiance) {
+    f64 x = radiance / (1 + radiance);
+    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+}
+
+// However bright a light is where it shines, and whatever else lights the pixel: in no tick of a
+// fade does the pixel change by 3 of 255. Nor where a lamp nearly touches its wall, nor where a
+// hundred lights go at once.
+TEST(systems_light_manager_state, a_fading_light_changes_no_pixel_much) {
+    static const f64 others[] = {0, 0.001, 0.02, 0.3, 5};
+    static const f64 counts[] = {1, 30};
+    f64 most = 0;
+    u32 longest = 0;
+    for (f64 brightest = 1e-5; brightest < 2e4; brightest *= 1.7)
+        for (u32 i = 0; i < COUNT_OF(others) * COUNT_OF(counts); i++) {
+            // Pixels that many lights reach are not the brightest of each.
+            f64 count = counts[i % 2], here = count > 1 ? brightest * 0.1 : brightest;
+            f32 share = 1, tail = light_fade_tail((f32)brightest);
+            f64 before = shown(others[i / 2] + here * count);
+            if (count > 1 && brightest < 0.02) continue; // dark ones add up
+            for (u32 ticks = 0; share != 1 || ticks < 300; ticks++) {
+                share = light_share_step(share, ticks < 300 ? 0 : 1, tail, false);
+                f64 now = shown(others[i / 2] + here * count * (f64)share);
+                most = MAX(most, fabs(now - before));
+                before = now;
+                if (share > 0 && ticks < 300) longest = MAX(longest, ticks);
+                assert_true(ticks < 600 && (ticks != 299 || share == 0));
+            }
+        }
+    printf("    most in a tick %.3f of 255, at most %u ticks\n", most, longest);
+    assert_true(most < 3);
+}
+
+// A pair's two lights and the merged one add up to one at every tick, also when they turn round.
+TEST(systems_light_manager_state, a_pair_and_its_light_stay_in_step) {
+    const u64 seed = 0x57AA;
+    f64 most = 0, off = 0;
+    for (u32 round = 0; round < 300; round++) {
+        f64 pair = pow(10, (f64)random_range(seed, 1, round, -4, 2)),
+            merged = pair * (f64)random_range(seed, 2, round, 0, 2),
+            other = (f64)random_range(seed, 3, round, 0, 0.1f);
+        LightSlot slot = {.weight = 1, .takes_place = true, .in_step = true};
+        slot.tail = light_fade_tail((f32)fabs(pair - merged));
+        u32 until = 40 + random_u32(seed, 4, round) % 200;
+        f64 before = shown(pair + other);
+        for (u32 ticks = 0; ticks < 900; ticks++) {
+            slot.pair_target = ticks < until ? 1 : 0;
+            slot.target = 1 - slot.pair_target;
+            f32 own = light_slot_weight(&slot, 1), one = light_slot_pair_weight(&slot, 1);
+            slot.weight = own, slot.pair_weight = one;
+            f64 now = shown(pair * (f64)own + merged * (f64)one + other);
+            most = MAX(most, fabs(now - before));
+            off = MAX(off, fabs((f64)own + (f64)one - 1));
+            before = now;
+        }
+        assert_true(slot.weight == 1 && slot.pair_weight == 0);
+    }
+    printf("    most in a tick %.3f of 255; off by %.1e\n", most, off);
+    assert_true(most < 3 && off < 1e-6);
+}
+
+// From none to all takes as long as it can be seen.
+TEST(systems_light_manager_state, what_nobody_sees_fades_fast) {
+    static const f32 brightest[] = {0, 0.001f, 0.1f, 10, 300};
+    u32 before = 0;
+    for (u32 i = 0; i < COUNT_OF(brightest); i++) {
+        u32 ticks[2] = {0, 0};
+        for (u32 k = 0; k < 2; k++)
+            for (f32 share = 1; share > 0 && ticks[k] < 999; ticks[k]++)
+                share = light_share_step(share, 0, light_fade_tail(brightest[i]), k == 1);
+        printf("    %8.3f: %3u ticks, a pair %3u\n", (f64)brightest[i], ticks[0], ticks[1]);
+        assert_in_range(ticks[0], MAX(before, 12), 240);
+        assert_in_range(ticks[1], ticks[0], 2 * ticks[0] + 2);
+        before = ticks[0];
+    }
 }
 
 typedef struct Seen {
@@ -150,7 +231,7 @@ TEST(systems_light_manager_state, nothing_jumps) {
     }
     printf("    most in a tick %.5f; pairs %u, in part %u, none %u, moves %u\n", (f64)most, pairs,
            part, none, moves);
-    assert_true(most <= 1.0f / LIGHT_FADE_TICKS + 1e-6f);
+    assert_true(most <= LIGHT_FADE_RATE + 1e-6f);
     assert_true(pairs > 1000 && part > 1000 && none > 1000 && moves > 1000);
     free(before);
     free(known);
