@@ -61,6 +61,13 @@ float gi_voxel_at(vec3 world) {
     return gi_grain(world, min(gi_cascade(world, gi_flow.origin[0].w), GI_CASCADES - 1u));
 }
 
+// Where cones of a surface start: offset voxels off it; a voxel counts as thick as it is along the
+// normal, so that all voxels that a plane passes through are as far behind the start.
+vec3 gi_start_at(vec3 position, vec3 normal) {
+    float thickness = dot(abs(normal), vec3(1.0));
+    return position + normal * (gi.cone.w * gi_voxel_at(position) * thickness);
+}
+
 // Length in m at which a ray leaves the box of the coarsest cascade; not positive if it misses it.
 float gi_exit(vec3 start, vec3 direction) {
     vec4 origin = gi_flow.origin[GI_CASCADES - 1u];

@@ -42,12 +42,7 @@ float gi_specular_tan(Surface s) {
     return max(sqrt(max(1.0 - cosine2, 0.0) / cosine2), gi.specular.x);
 }
 
-// Where cones start: offset voxels off the surface; a voxel counts as thick as it is along the
-// normal, so that all voxels that a plane passes through are as far behind the start.
-vec3 gi_start(GbufferPixel g) {
-    float thickness = dot(abs(g.normal), vec3(1.0));
-    return g.position + g.normal * (gi.cone.w * gi_voxel_at(g.position) * thickness);
-}
+vec3 gi_start(GbufferPixel g) { return gi_start_at(g.position, g.normal); }
 
 // Length of a cone's first sample, in voxels. Dithered: up to a quarter of a step off, by a fixed
 // pattern of 4 x 4 (Bayer 1973), so that samples of neighbouring pixels lie at different lengths.

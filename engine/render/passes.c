@@ -12,6 +12,14 @@ void bind_frame(const PassContext *c, GpuPipeline pipeline) {
     gpu_cmd_bind_group(c->cmd, 0, c->renderer->frame_group);
 }
 
+// Blended surfaces that voxels light need these as well.
+static void bind_draws(const PassContext *c, PipelineKind kind, GpuPipeline pipeline) {
+    if (kind == PIPELINE_GI_FORWARD_BLEND)
+        gi_bind_screen(c, pipeline);
+    else
+        bind_frame(c, pipeline);
+}
+
 // A list has few kinds of pipelines: looked up once each.
 #define VARIANTS (2 * 4 * 3)
 
@@ -50,16 +58,17 @@ static void draw_unseen(const PassContext *c, PipelineKind kind, bool alpha_mask
     GpuPipeline cache[VARIANTS] = {{0}};
     for (u32 i = 0; i < c->packet->material_bindings.count * variants; i++) {
         const PacketMaterial *material = &materials[i / variants];
-        bool is_drawn = kind == PIPELINE_FORWARD_BLEND ? material->alpha_mode == ALPHA_MODE_BLEND
-                        : kind == PIPELINE_EMISSIVE    ? material->emissive_pass
-                        : alpha_mask                   ? material->alpha_mode == ALPHA_MODE_MASK
-                                                       : material->alpha_mode != ALPHA_MODE_BLEND;
+        bool is_blend = kind == PIPELINE_FORWARD_BLEND || kind == PIPELINE_GI_FORWARD_BLEND;
+        bool is_drawn = is_blend                    ? material->alpha_mode == ALPHA_MODE_BLEND
+                        : kind == PIPELINE_EMISSIVE ? material->emissive_pass
+                        : alpha_mask                ? material->alpha_mode == ALPHA_MODE_MASK
+                                                    : material->alpha_mode != ALPHA_MODE_BLEND;
         u32 count = r->pipeline_count;
         GpuPipeline pipeline =
             is_drawn ? variant_pipeline(c, kind, alpha_mask, material, i % variants, cache)
                      : (GpuPipeline){0};
         if (!pipeline.id || r->pipeline_count == count) continue; // it has been seen
-        bind_frame(c, pipeline);
+        bind_draws(c, kind, pipeline);
         if (push_size) gpu_cmd_push(c->cmd, push, push_size);
         gpu_cmd_bind_group(c->cmd, 1, render_material_group(r, material));
         gpu_cmd_draw_indexed(c->cmd, 3, 1, r->meshes[mesh].lods[0].first_index,
@@ -90,7 +99,7 @@ void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection secti
         GpuPipeline pipeline = variant_pipeline(c, kind, alpha_mask, material, vertex_lit, cache);
         if (!pipeline.id) continue;
         if (pipeline.id != bound.id) {
-            bind_frame(c, pipeline);
+            bind_draws(c, kind, pipeline);
             if (push_size && !bound.id) gpu_cmd_push(c->cmd, push, push_size);
             bound = pipeline;
             bound_material = UINT32_MAX;

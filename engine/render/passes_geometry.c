@@ -54,12 +54,15 @@ static void over_record(const PassContext *c) {
                              .depth_read_only = true});
     draw_fullscreen(c, PIPELINE_SKY);
     draw_list(c, PIPELINE_EMISSIVE, c->packet->emissive_draws, false);
-    draw_list(c, PIPELINE_FORWARD_BLEND, c->packet->blend_draws, false);
+    draw_list(c, gi_is_on(c) ? PIPELINE_GI_FORWARD_BLEND : PIPELINE_FORWARD_BLEND,
+              c->packet->blend_draws, false);
     gpu_cmd_end_rendering(c->cmd);
 }
 const Pass over_pass = {"sky and glow",
                         {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
-                         USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT)},
-                        5,
+                         USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT),
+                         USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
+                         USE(GI_VISIBILITY, SAMPLED_FRAGMENT), USE(GI_PROBES, SAMPLED_FRAGMENT)},
+                        9,
                         over_record,
                         NULL};

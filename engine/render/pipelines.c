@@ -437,6 +437,20 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                    .blend = GPU_BLEND_ADD,
                                    .spec_mask = SPEC_ONE_LIGHT | SPEC_READ_VOXELS |
                                                 SPEC_BIT(SPEC_GI_TRACED)},
+    [PIPELINE_GI_FORWARD_BLEND] = {.label = "gi forward blend",
+                                   .vertex = "forward.vert",
+                                   .fragment = "gi_forward.frag",
+                                   .targets = {RESOURCE_HDR},
+                                   .target_count = 1,
+                                   .has_depth = true,
+                                   .may_be_ms = true,
+                                   .depth = GPU_DEPTH_TEST,
+                                   .blend = GPU_BLEND_ALPHA,
+                                   .vertex_layout = GPU_VERTEX_MESH,
+                                   .spec_mask = SPEC_LIGHTING | SPEC_LISTS |
+                                                SPEC_BIT(SPEC_TEXTURES) | SPEC_GI_IMAGES |
+                                                SPEC_BIT(SPEC_GI_DIFFUSE) |
+                                                SPEC_BIT(SPEC_GI_TRACED)},
     [PIPELINE_GI_TRACE] = {.label = "gi trace",
                            .compute = "gi_trace.comp",
                            .spec_mask = SPEC_READ_VOXELS},
@@ -593,7 +607,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_GI_RESOLUTION] = gi->resolution,
         [SPEC_GI_TRACED] = renderer->gi.traced_shadows,
     };
-    if (kind == PIPELINE_FORWARD_BLEND) {
+    if (kind == PIPELINE_FORWARD_BLEND || kind == PIPELINE_GI_FORWARD_BLEND) {
         // Blended surfaces lie before those that the device made its lists for.
         spec[SPEC_DEVICE_LISTS] = 0;
         spec[SPEC_CLUSTERED] = MIN(spec[SPEC_CLUSTERED], 1);

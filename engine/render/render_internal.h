@@ -159,6 +159,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_IRRADIANCE, // of voxels, for diffuse = voxels
     PIPELINE_GI_PROBES,
     PIPELINE_GI_TRACED_LIGHTS, // from here on: passes over the screen
+    PIPELINE_GI_FORWARD_BLEND, // blended surfaces, where voxels light them
     PIPELINE_GI_TRACE,
     PIPELINE_GI_COMPOSE,
     PIPELINE_GI_COMPOSE_MS, // of several samples a pixel

@@ -62,7 +62,9 @@ TEST_GPU(gi_leaks, sealed_rooms) {
     enum { HALF, ONE, TWO, THREE };
     Studio studio;
     studio_open(&studio, "data/levels/sealed_room.toml");
-    f64 shared[ROOMS], apart[ROOMS], fine[ROOMS];
+    f64 shared[ROOMS], apart[ROOMS], fine[ROOMS], kept[ROOMS], kept_fine[ROOMS];
+    measure(&studio, "thesis", "gi.diffuse=voxels", kept);
+    measure(&studio, "thesis", "gi.diffuse=voxels,gi.faces=apart,gi.step_factor=0.2", kept_fine);
     measure(&studio, "thesis", "", shared);
     measure(&studio, "thesis", "gi.faces=apart", apart);
     measure(&studio, "thesis", "gi.faces=apart,gi.step_factor=0.2", fine);

@@ -99,6 +99,61 @@ TEST_GPU(golden, gi_paths_agree_on_traced_shadows) {
                ",gi.resolution=half");
 }
 
+// --- Blended surfaces, which no G-buffer shows ---
+
+// Mean of a picture's part, columns and rows in hundredths.
+static f64 mean_of(RenderImage image, u32 left, u32 right, u32 top, u32 bottom) {
+    f64 sum = 0.0;
+    u32 count = 0;
+    for (u32 y = image.height_px * top / 100; y < image.height_px * bottom / 100; y++)
+        for (u32 x = image.width_px * left / 100; x < image.width_px * right / 100; x++)
+            for (u32 k = 0; k < 3; k++, count++)
+                sum += image.rgba[4 * (y * image.width_px + x) + k];
+    return sum / count;
+}
+
+// The left wall becomes a blended surface that nothing shines through: it still gets the light
+// whose shadow is traced, and what bounces.
+TEST_GPU(golden, gi_lights_blended_surfaces) {
+    Studio studio;
+    studio_open(&studio, "data/levels/cornell.toml");
+    LightTable *light = WORLD_TABLE(studio.session.world, Light, light);
+    for (u32 row = 0; row < light->table.count; row++) {
+        light->screen_shadow[row] = SCREEN_SHADOW_CONE;
+        table_touch(&light->table, row);
+    }
+    session_advance(&studio.session, 2);
+    static const char *const lists[] = {"gi.diffuse=none", "gi.diffuse=cones",
+                                        "gi.diffuse=cones,gi.cascades=2,gi.faces=apart",
+                                        "gi.diffuse=probes", "gi.diffuse=voxels"};
+    MaterialTable *materials = WORLD_TABLE(studio.session.world, Material, material);
+    f64 means[COUNT_OF(lists)][2];
+    for (u32 turn = 0; turn < 2; turn++) {
+        for (u32 i = 0; i < COUNT_OF(lists); i++) {
+            char list[256];
+            snprintf(list, sizeof list, "clustered_deferred,gi.ao=off,%s,%s", GI, lists[i]);
+            RenderImage image = draw(&studio, list, WIDTH, HEIGHT);
+            RenderImage forward =
+                draw(&studio, strchr(list, ',') + 1, WIDTH, HEIGHT); // the default path
+            if (difference(&studio, image, forward).max > 2) fail_msg("%s differs by path", list);
+            means[i][turn] = mean_of(image, 24, 32, 30, 80);
+        }
+        for (u32 row = 0; row < materials->table.count; row++) {
+            if (materials->albedo_r[row] < 4.0f * materials->albedo_g[row]) continue;
+            materials->alpha_mode[row] = ALPHA_BLEND; // the red wall alone
+            table_touch(&materials->table, row);
+        }
+    }
+    for (u32 i = 0; i < COUNT_OF(lists); i++) {
+        printf("%s: opaque %.1f, blended %.1f\n", lists[i], means[i][0], means[i][1]);
+        if (means[i][1] < 0.8 * means[i][0] || means[i][1] > 1.25 * means[i][0])
+            fail_msg("%s: a blended wall is lit otherwise", lists[i]);
+    }
+    // Without the light that bounces there is less.
+    assert_true(means[1][1] > 1.02 * means[0][1]);
+    studio_close(&studio);
+}
+
 // --- Every layout: those that lose nothing agree, the others stay near ---
 
 TEST_GPU(golden, gi_layouts_stay_near) {
