@@ -103,7 +103,9 @@ vec3 filtered_cells(vec3 eye, vec3 ray) {
     for (uint i = 0u; i < VIEW_STEPS && walk.t < range.y && sum.a < 0.98; i++) {
         ivec3 texel = ivec3(walk.place);
         texel += ivec3(cells.x * int(block), 0, cells.z * int(walk.cascade));
-        sum += gi_decode(texelFetch(gi_atlas, texel, int(level))) * (1.0 - sum.a);
+        // The eye may stand in a coarse cell: what is closer than half of one is passed over.
+        float shown = walk.t > 0.5 * side * gi_flow.origin[walk.cascade].w ? 1.0 : 0.0;
+        sum += gi_decode(texelFetch(gi_atlas, texel, int(level))) * ((1.0 - sum.a) * shown);
         view_next(walk);
         range.y = view_is_inside(walk) ? range.y : -1.0;
     }
