@@ -26,9 +26,12 @@ void main() {
         faces &= faces - 1u;
         vec3 light = albedo * gather(face);
         if (GI_FACES != 0u) {
-            vec4 sent = gi_load_radiance(slot, face);
-            sent.rgb += light * voxel_face(face);
-            gi_store_radiance(slot, face, sent);
+            uint first = face == GATHER_MEAN ? 0u : face, last = face == GATHER_MEAN ? 5u : face;
+            for (uint f = first; f <= last; f++) {
+                vec4 sent = gi_load_radiance(slot, f);
+                sent.rgb += light * voxel_face(f);
+                gi_store_radiance(slot, f, sent);
+            }
         } else {
             sum += light * (face == GATHER_MEAN ? 1.0 : voxel_face(face));
         }

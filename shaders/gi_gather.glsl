@@ -1,6 +1,6 @@
 // gi_gather.glsl: indirect light that arrives at an occupied voxel: six diffuse cones (gi_cones.glsl)
-// about its mean normal; where normals cancel out, or with faces apart, about the axes of the faces
-// that it has.
+// about its mean normal; where normals cancel out, or with faces apart several surfaces meet, about
+// the axes of the faces that it has.
 // The includer has included gi.glsl with GI_BUILD.
 #ifndef GI_GATHER_GLSL
 #define GI_GATHER_GLSL
@@ -15,7 +15,7 @@ const uint GATHER_MEAN = 6u; // after the faces 0..5: about the mean normal
 uint gather_faces(bool is_there) {
     uint faces = 0u;
     for (uint f = 0u; f < 6u; f++) faces |= voxel_face(f) > 0.0 ? 1u << f : 0u;
-    bool by_mean = GI_FACES == 0u && normal != vec3(0.0);
+    bool by_mean = normal != vec3(0.0) && (GI_FACES == 0u || facet >= 0.5);
     faces = by_mean ? 1u << GATHER_MEAN : faces;
     return is_there ? faces : 0u;
 }

@@ -9,6 +9,7 @@ const float GI_NORMAL_SHORTEST = 1.0 / 32.0;
 const float GI_FACE_WHOLE = 1.0 / 16.0;
 
 vec3 position, normal; // world, its middle; normal: unit, or 0 where normals cancel out
+float facet;           // apart: 1 where one surface fills it, facing the normal; 0 at edges and corners
 uint cascade;
 // What its faces +x +y +z and -x -y -z count. apart: 1, down to 0 for faces that the surface hardly
 // has. shared: sum 1; normal^2 on the side of the normal, without one each face's share.
@@ -40,6 +41,7 @@ void voxel_load(uint slot) {
     float size = length(mean);
     bool agrees = size >= GI_NORMAL_SHORTEST;
     normal = agrees ? mean / size : vec3(0.0);
+    facet = clamp(size * 8.0 - 6.4, 0.0, 1.0);
     uvec2 faces = uvec2(gi_attribute(slot, GI_ATTRIBUTE_FACES_0),
                         gi_attribute(slot, GI_ATTRIBUTE_FACES_1));
     ahead = vec3(gi_face(faces, 0u), gi_face(faces, 2u), gi_face(faces, 4u));

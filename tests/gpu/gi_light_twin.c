@@ -10,6 +10,7 @@ typedef struct Voxel {
     u32 cascade;
     f32 position[3], size;
     f32 normal[3];  // unit or 0
+    f32 facet;      // how much it is one surface
     f32 share[6];   // faces
     bool beside[6]; // is the next voxel on that side occupied?
     f32 albedo[3], emission[3];
@@ -33,6 +34,7 @@ static Voxel unpack(const VoxelScene *stage, u32 slot) {
         v.emission[a] = ldexpf((f32)(emission >> 9 * a & 511), (int)(emission >> 27) - 24);
     }
     f32 length = sqrtf(dot3(mean, mean));
+    v.facet = clamp01(length * 8.0f - 6.4f);
     for (u32 a = 0; a < 3; a++) v.normal[a] = length >= 1.0f / 32 ? mean[a] / length : 0.0f;
     for (u32 f = 0; f < 6; f++)
         v.share[f] = (f32)((f < 4 ? words[GI_ATTRIBUTE_FACES_0] : words[GI_ATTRIBUTE_FACES_1]) >>
@@ -84,10 +86,12 @@ static void add(const VoxelScene *stage, const Voxel *v, const f32 weight[6], co
         cosine = MAX(dot3(v->normal, l), 0.0f);
     else
         for (u32 f = 0; f < 6; f++) cosine += weight[f] * facing(l, f);
+    f32 slanted = MAX(dot3(v->normal, l), 0.0f);
     for (u32 f = 0; f < 6; f++)
         for (u32 k = 0; k < 3; k++)
             if (stage->spec[SPEC_GI_FACES])
-                sum->face[f][k] += irradiance[k] * facing(l, f);
+                sum->face[f][k] +=
+                    irradiance[k] * (facing(l, f) + (slanted - facing(l, f)) * v->facet);
             else if (f == 0)
                 sum->face[0][k] += irradiance[k] * cosine;
 }
