@@ -1,9 +1,10 @@
 // commands.c: what a frame records.
 //
 // Data in: handles and numbers of one frame. Data out: Vulkan commands in the frame's command
-// buffer. Called by the passes. Does not keep state beyond the bound pipeline's layout, and does
-// not order anything: barriers are the caller's (gpu_cmd_barriers).
+// buffer. Called by the passes. Keeps what is bound, to bind nothing twice, and no other state;
+// does not order anything: barriers are the caller's (gpu_cmd_barriers).
 #include "gpu_internal.h"
+#include <string.h>
 
 // --- Rendering ---
 
@@ -114,16 +115,33 @@ void gpu_cmd_scissor(GpuCommands *cmd, i32 x, i32 y, u32 width, u32 height) {
 void gpu_cmd_bind_pipeline(GpuCommands *cmd, GpuPipeline pipeline) {
     const GpuPipelineItem *item = gpu_pool_get(&cmd->gpu->pipelines, pipeline.id);
     cmd->layout = item->layout;
+    memcpy(cmd->layouts, item->desc.layouts, sizeof cmd->layouts);
     cmd->push_size = item->desc.push_size;
     cmd->bind_point =
         item->is_compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
     cmd->gpu->vk.vkCmdBindPipeline(cmd->buffer, cmd->bind_point, item->pipeline);
 }
 
+// Do the bound pipeline's layouts agree with those that a group was bound with, up to its own?
+static bool agrees(const GpuCommands *cmd, const GpuBoundGroup *bound, u32 set) {
+    for (u32 i = 0; i <= set; i++)
+        if (bound->layouts[i].id != cmd->layouts[i].id) return false;
+    return true;
+}
+
+// The software driver handles every binding of a set again when it is bound, and compares all
+// uniform blocks with the last ones at the next draw: what is bound already stays.
 void gpu_cmd_bind_group(GpuCommands *cmd, u32 set, GpuBindGroup group) {
     LUZ_ASSERT(cmd->layout && set < GPU_GROUPS_CAP);
     const GpuBindGroupItem *item = gpu_pool_get(&cmd->gpu->bind_groups, group.id);
     u32 slot = item->set_count > 1 ? cmd->gpu->frame_slot : 0;
+    GpuBoundGroup *bound = cmd->bound[cmd->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE];
+    if (bound[set].set == item->sets[slot] && agrees(cmd, &bound[set], set)) return;
+    // Sets whose layouts differ from this pipeline's are disturbed (Vulkan 1.3, 14.2.2).
+    for (u32 i = 0; i < GPU_GROUPS_CAP; i++)
+        if (i == set || !agrees(cmd, &bound[i], i)) bound[i].set = VK_NULL_HANDLE;
+    bound[set].set = item->sets[slot];
+    memcpy(bound[set].layouts, cmd->layouts, sizeof bound[set].layouts);
     cmd->gpu->vk.vkCmdBindDescriptorSets(cmd->buffer, cmd->bind_point, cmd->layout, set, 1,
                                          &item->sets[slot], 0, NULL);
 }

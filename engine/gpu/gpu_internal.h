@@ -152,12 +152,19 @@ typedef struct GpuDoomed {
 
 // --- Frames ---
 
+// A descriptor set that stays bound as long as pipelines agree on the layouts up to its own.
+typedef struct GpuBoundGroup {
+    VkDescriptorSet set; // VK_NULL_HANDLE = none
+    GpuBindLayout layouts[GPU_GROUPS_CAP];
+} GpuBoundGroup;
 struct GpuCommands {
     Gpu *gpu;
     VkCommandBuffer buffer;
     VkPipelineLayout layout; // of the bound pipeline
     u32 push_size;
     VkPipelineBindPoint bind_point;
+    GpuBindLayout layouts[GPU_GROUPS_CAP];  // of its groups
+    GpuBoundGroup bound[2][GPU_GROUPS_CAP]; // graphics, compute
     bool is_rendering;
 };
 typedef struct GpuFrameSlot {
