@@ -16,7 +16,7 @@
 
 layout(constant_id = SPEC_GI_DIRECTIONS) const uint GI_DIRECTIONS = 6;
 layout(constant_id = SPEC_GI_FACES) const uint GI_FACES = 0;
-layout(constant_id = SPEC_GI_NEAREST_MIPS) const uint GI_NEAREST_MIPS = 0;
+layout(constant_id = SPEC_GI_MIPS) const uint GI_MIPS = GI_READ_LINEAR;
 layout(constant_id = SPEC_GI_CASCADES) const uint GI_CASCADES = 1;
 layout(constant_id = SPEC_GI_DIFFUSE) const uint GI_DIFFUSE = 1;
 layout(constant_id = SPEC_GI_FEATURES) const uint GI_FEATURES = 0;
@@ -213,7 +213,8 @@ vec4 gi_decode(vec4 texel) {
 
 // The atlas: level 0 of a direction's block of one cascade is gi.atlas.xyz texels, and level l is
 // that >> l, down to where the smallest side is 1. Blocks lie along x, cascades along z. With faces
-// shared a texel of level 0 is two voxels wide, with faces apart one.
+// shared a texel of level 0 is two voxels wide, with faces apart one. With GI_READ_THIRDS (one cascade,
+// faces shared) this is its lower half along z.
 
 float gi_atlas_lod() { return GI_FACES != 0u ? 0.0 : 1.0; } // lod of its level 0
 
@@ -230,22 +231,27 @@ GiAxes gi_axes(vec3 direction) {
     return axes;
 }
 
-vec4 gi_atlas_fetch(vec3 p, float level) {
+// is_whole: the level is, and the sampler need not look at two.
+vec4 gi_atlas_fetch(vec3 p, float level, bool is_whole) {
 #ifdef GI_SCREEN
-    if (GI_NEAREST_MIPS != 0u) return textureLod(gi_atlas_nearest_mip, p, level);
+    if (is_whole) return textureLod(gi_atlas_nearest_mip, p, level);
 #endif
     return textureLod(gi_atlas, p, level);
+}
+vec4 gi_atlas_fetch(vec3 p, float level) {
+    return gi_atlas_fetch(p, level, GI_MIPS == GI_READ_NEAREST);
 }
 
 // The atlas at p (in voxels of the cascade), of a level that need not be whole.
 vec4 gi_atlas_sample(vec3 p, uint cascade, float level, GiAxes axes) {
     level = clamp(level, 0.0, float(gi.atlas.w) - 1.0);
-    if (GI_NEAREST_MIPS != 0u) level = floor(level + 0.5);
+    if (GI_MIPS == GI_READ_NEAREST) level = floor(level + 0.5);
     // Neighbouring blocks and cascades must not be blended with: half a texel of the coarser level
     // that is read stays between.
     vec3 half_texel = 0.5 * exp2(ceil(level)) / vec3(gi.atlas.xyz);
     vec3 q = clamp(p / vec3(gi.dims.xyz), half_texel, 1.0 - half_texel);
     if (GI_CASCADES > 1u) q.z = (q.z + float(cascade)) / float(GI_CASCADES);
+    if (GI_MIPS == GI_READ_THIRDS) q.z *= 0.5;
     vec4 sum;
     if (GI_DIRECTIONS == 1u) {
         sum = gi_atlas_fetch(q, level);
@@ -273,7 +279,7 @@ vec4 gi_sample(vec3 p, uint cascade, float lod, GiAxes axes) {
     vec4 filtered = gi_atlas_sample(p, cascade, lod - gi_atlas_lod(), axes);
     if (GI_FACES != 0u) return filtered;
     float share = clamp(lod, 0.0, 1.0);
-    if (GI_NEAREST_MIPS != 0u) share = floor(share + 0.5);
+    if (GI_MIPS == GI_READ_NEAREST) share = floor(share + 0.5);
     return mix(gi_base_sample(p, cascade), filtered, share);
 }
 vec4 gi_sample(vec3 p, uint cascade, float lod, vec3 direction) {

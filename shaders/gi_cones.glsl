@@ -12,7 +12,8 @@
 // the work. So a cone through one cascade is three loops that read ever coarser: where it is
 // narrower than a voxel the base alone (1 read), up to two voxels base and the finest level of the
 // atlas (4 reads of one level each), from there on the atlas (3 reads of two levels, or of one where
-// the lod is whole: see gi_cone_growth). What does not
+// the lod is whole: see gi_cone_growth; with the usual cones the lods between are made ahead, as
+// levels of their own: GI_READ_THIRDS). What does not
 // change along a cone is made before, and all that steers a loop comes from gi_flow.
 //
 // With faces apart walls hold light back. What is blended must lie within the cone: texels narrower
@@ -106,15 +107,21 @@ void gi_cone_end(inout GiCone cone) {
 }
 
 // Undecoded levels of the atlas at q (0..1 of the box), with one cascade: y and z end at the
-// picture's border, where the sampler clamps; blocks lie side by side along x.
-vec4 gi_cone_atlas(vec3 q, float level, GiAxes axes) {
-    if (GI_DIRECTIONS == 1u) return gi_atlas_fetch(q, level);
-    float half_texel =
-        0.5 * uintBitsToFloat(uint(ceil(level) + 127.0) << 23) / float(gi.atlas.x);
+// picture's border, where the sampler clamps; blocks lie side by side along x. layer: of
+// GI_READ_THIRDS, 0 = the levels, 0.5 = what lies between them. is_whole (a constant): no level that
+// is read lies between two.
+vec4 gi_cone_atlas(vec3 q, float level, float layer, bool is_whole, GiAxes axes) {
+    if (GI_DIRECTIONS == 1u) return gi_atlas_fetch(q, level, is_whole);
+    float texel = 0.5 * uintBitsToFloat(uint(ceil(level) + 127.0) << 23);
+    float half_texel = texel / float(gi.atlas.x);
+    if (GI_MIPS == GI_READ_THIRDS) {
+        float edge = texel / float(gi.atlas.z);
+        q.z = clamp(q.z, edge, 1.0 - edge) * 0.5 + layer;
+    }
     vec3 x = (axes.block + clamp(q.x, half_texel, 1.0 - half_texel)) * (1.0 / 6.0);
-    return gi_atlas_fetch(vec3(x.x, q.yz), level) * axes.weight.x +
-           gi_atlas_fetch(vec3(x.y, q.yz), level) * axes.weight.y +
-           gi_atlas_fetch(vec3(x.z, q.yz), level) * axes.weight.z;
+    return gi_atlas_fetch(vec3(x.x, q.yz), level, is_whole) * axes.weight.x +
+           gi_atlas_fetch(vec3(x.y, q.yz), level, is_whole) * axes.weight.y +
+           gi_atlas_fetch(vec3(x.z, q.yz), level, is_whole) * axes.weight.z;
 }
 
 // Factor from one length of a cone to the next. Rounded, if that changes it by little, so that the
@@ -126,7 +133,11 @@ float gi_cone_growth(float step) {
 // Length in voxels of a wide cone's first sample, as a share of GI_START: where it is a voxel wide.
 float gi_cone_first(float tan_half) { return clamp(0.5 / tan_half, 0.75, 1.25); }
 
-GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float end) {
+// has_thirds (a constant): every lod is whole or an odd number of thirds, which GI_READ_THIRDS has
+// made ahead.
+GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float end,
+                      bool has_thirds) {
+    bool is_nearest = GI_MIPS == GI_READ_NEAREST, is_whole = is_nearest || has_thirds;
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
     float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half;
@@ -144,15 +155,18 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
         for (; t < near_end && cone.light.a < GI_OPAQUE; t *= growth) {
             vec3 at = q + dq * t;
             float share = log2(max(width * t, 1.0));
-            if (GI_NEAREST_MIPS != 0u) share = floor(share + 0.5);
-            vec4 s = mix(textureLod(gi_base, at, 0.0), gi_cone_atlas(at, 0.0, axes), share);
+            if (GI_MIPS == GI_READ_NEAREST) share = floor(share + 0.5);
+            vec4 s = mix(textureLod(gi_base, at, 0.0), gi_cone_atlas(at, 0.0, 0.0, true, axes),
+                         share);
             gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
         }
         for (float lod = log2(width * t) - 1.0; t < end && cone.light.a < GI_OPAQUE; lod += rise) {
-            float whole = floor(lod + 0.5);
-            bool is_whole = GI_NEAREST_MIPS != 0u || abs(lod - whole) < 0.01;
-            float level = min(is_whole ? whole : lod, last_level);
-            gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
+            float whole = floor(lod + (has_thirds ? 0.1 : 0.5)), layer = 0.0;
+            float level = is_whole || abs(lod - whole) < 0.01 ? whole : lod;
+            if (has_thirds) layer = lod - whole > 0.1 && whole < last_level ? 0.5 : 0.0;
+            level = min(level, last_level);
+            gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, layer, is_whole, axes),
+                        1.0 / (1.0 + lambda * t));
             t *= growth;
         }
         gi_cone_end(cone);
@@ -161,8 +175,9 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
     while (t < end && cone.light.a < GI_OPAQUE) {
         float diameter = max(width * t, 1.0);
         float level = min(gi_cone_lod(diameter) - gi_atlas_lod(), last_level);
-        if (GI_NEAREST_MIPS != 0u) level = floor(level + 0.5);
-        gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, axes), 1.0 / (1.0 + lambda * t));
+        if (GI_MIPS == GI_READ_NEAREST) level = floor(level + 0.5);
+        gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, 0.0, is_nearest, axes),
+                    1.0 / (1.0 + lambda * t));
         t += max(diameter * factor, GI_CLOSEST);
     }
     gi_cone_end(cone);
@@ -196,17 +211,21 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
 }
 
 // start: world; direction: unit; first: length of the first sample in voxels of the start's cascade
-// (GI_START); reach: m, nothing is traced if it is not positive.
-GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
+// (GI_START); reach: m, nothing is traced if it is not positive; has_thirds: see gi_cone_single.
+GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float reach,
+               bool has_thirds) {
     float end = min(reach, gi_exit(start, direction));
     if (GI_CASCADES == 1u) {
         // Lanes that a fragment shader runs beside its pixels read 0 from storage buffers on the
         // software driver. They must trace nothing: steps of no length would not end before the
         // driver's limit of iterations does, which the pixels beside them share.
         float voxel = max(gi_flow.origin[0].w, 1e-9);
-        return gi_cone_single(start, direction, tan_half, first, end / voxel);
+        return gi_cone_single(start, direction, tan_half, first, end / voxel, has_thirds);
     }
     return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end, false);
+}
+GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float reach) {
+    return gi_cone(start, direction, tan_half, first, reach, false);
 }
 
 // Opacity of a cone towards a light, arguments as for gi_cone.
@@ -250,7 +269,8 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, float first, float reach, ui
         const vec2 step = vec2(0.309016994, 0.951056516);
         vec2 turned = vec2(turn.x * step.x - turn.y * step.y, turn.x * step.y + turn.y * step.x);
         turn = is_first ? turn : turned;
-        GiCone cone = gi_cone(start, direction, tan_half, first, reach);
+        GiCone cone =
+            gi_cone(start, direction, tan_half, first, reach, GI_MIPS == GI_READ_THIRDS);
         vec3 sky = mix(horizon, zenith, sqrt(clamp(direction.y, 0.0, 1.0)));
         sum.light += (cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0)) * share;
         sum.visibility -= cone.occlusion * share;

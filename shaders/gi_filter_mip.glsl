@@ -13,6 +13,7 @@ vec4 pair(ivec3 front, ivec3 back) {
 
 void main() {
     ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(target);
+    if (GI_MIPS == GI_READ_THIRDS) size.z >>= 1;
     if (any(greaterThanEqual(texel, size))) return;
     // Blocks are as wide as a power of two, so that twice a texel's place is its first child's.
     ivec3 front = texel * 2;

@@ -159,7 +159,7 @@ typedef struct MeshVertex {
 #define SPEC_POST          27 // of a post pass: a switch of its own (post_fog.frag, split.frag, tonemap.frag)
 #define SPEC_GI_DIRECTIONS 28 // blocks of the atlas: 6, 1 = isotropic
 #define SPEC_GI_FACES      29 // 0 = base volume and an atlas of half its size, 1 = atlas alone, of full size
-#define SPEC_GI_NEAREST_MIPS 30 // 1 = cones read the nearest mip
+#define SPEC_GI_MIPS       30 // GI_READ_*: how cones read levels of the atlas
 #define SPEC_GI_CASCADES   31 // 1..GI_CASCADES_CAP
 #define SPEC_GI_DIFFUSE    32 // GiDiffuse: 0 none, 1 cones, 2 probes, 3 voxels
 #define SPEC_GI_FEATURES   33 // GI_FEATURE_*
@@ -238,6 +238,11 @@ typedef struct MeshVertex {
 // --- Global illumination ---
 #define GI_CASCADES_CAP 3
 #define GI_TRACED_CAP   16 // lights whose shadows on the screen come from the voxels
+// SPEC_GI_MIPS. Thirds: as linear, from an atlas whose upper half along z holds, in level l, what is
+// a third of the way (of odd levels two thirds) to level l + 1: see gi_filter_thirds.glsl.
+#define GI_READ_LINEAR  0
+#define GI_READ_NEAREST 1
+#define GI_READ_THIRDS  2
 #define GI_FEATURE_SPECULAR 1
 #define GI_FEATURE_AO       2
 #define GI_FEATURE_DITHER   4

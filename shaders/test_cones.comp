@@ -20,8 +20,9 @@ void main() {
     vec4 light;
     vec2 more;
     if (GI_STEP == 0u) {
+        bool has_thirds = GI_MIPS == GI_READ_THIRDS && abs(number(i, 3u) - 0.57735) < 1e-4;
         GiCone cone = gi_cone(numbers(i, 0u), numbers(i, 4u), number(i, 3u), number(i, 7u),
-                              number(i, 8u));
+                              number(i, 8u), has_thirds);
         light = cone.light;
         more = vec2(cone.occlusion, cone.steps);
     } else {

@@ -105,6 +105,19 @@ bool gi_wants_irradiance(const Packet *packet) {
             packet->settings.gi_show == GI_SHOW_IRRADIANCE);
 }
 
+// Is the lod of every sample of a wide cone (gi_cones.glsl) whole, or an odd number of thirds? Its
+// length grows by 1 + step from one to the next, which gi_cone_growth rounds to two thirds of an
+// octave where that is within 4 %: from 2^(2/3 / 1.04) to 2^(2/3 / 0.96).
+bool gi_makes_thirds(const Packet *packet) {
+    const GiParams *params = &packet->gi.params;
+    const GiRecord *record = &packet->gi.record;
+    f32 tan_half = record->cone[0], step = 2.0f * tan_half * record->cone[1];
+    return params->mips == GI_MIPS_LINEAR && params->faces == GI_FACES_SHARED &&
+           params->filter == GI_FILTER_DIRECTIONAL && record->dims[3] == 1 &&
+           params->diffuse == GI_DIFFUSE_CONES && !params->dither && tan_half >= 0.4f &&
+           tan_half <= 2.0f / 3.0f && step > 0.5595f && step < 0.6181f;
+}
+
 // A texture that this packet does not use is as small as a 3D texture can be: its binding must hold
 // something.
 static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
@@ -113,7 +126,8 @@ static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
     const u32 *dims = record->dims;
     u32 blocks = params->filter == GI_FILTER_ISOTROPIC ? 1 : 6;
     const u32 unused[4] = {2, 2, 2, 1}, volume[4] = {dims[0], dims[1], dims[2] * dims[3], 1};
-    const u32 atlas[4] = {record->atlas[0] * blocks, record->atlas[1], record->atlas[2] * dims[3],
+    const u32 atlas[4] = {record->atlas[0] * blocks, record->atlas[1],
+                          record->atlas[2] * dims[3] * (gi_makes_thirds(packet) ? 2 : 1),
                           record->atlas[3]};
     const u32 probes[4] = {record->probes[0] * 6, record->probes[1], MAX(record->probes[2], 2), 1};
     const u32 traced[4] = {(u32)record->trace[0], (u32)record->trace[1], 1, 1};

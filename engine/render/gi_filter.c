@@ -6,7 +6,8 @@
 //
 // The finest level that is written, and the one over it, hold what is occupied and zeros; only
 // voxels that are there or were there are touched (gi_filter_base.glsl). From the next level on
-// everything is made anew: an eighth of the texels each.
+// everything is made anew: an eighth of the texels each. Last, for cones that read them, levels
+// between the levels (gi_filter_thirds.glsl).
 #include "passes.h"
 
 static bool is_fresh(const PassContext *c) { return gi_is_on(c) && c->renderer->gi.is_fresh; }
@@ -70,6 +71,14 @@ static void levels_record(const PassContext *c) {
         u32 z = (record->atlas[2] >> level) * cascades;
         gi_bind_build(c, mip, level);
         gpu_cmd_dispatch(c->cmd, (x + 7) / 8, (y + 3) / 4, (z + 1) / 2);
+        gi_barrier(c, (RenderResource[]){RESOURCE_GI_ATLAS}, 1);
+    }
+    for (u32 level = 0; gi_makes_thirds(c->packet) && level + 1 < record->atlas[3]; level++) {
+        GpuPipeline thirds = pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_THIRDS,
+                                          (PipelineVariant){.post = level & 1});
+        u32 x = (record->atlas[0] >> level) * blocks, y = record->atlas[1] >> level;
+        gi_bind_build(c, thirds, level + 1); // its source is this level
+        gpu_cmd_dispatch(c->cmd, (x + 7) / 8, (y + 3) / 4, ((record->atlas[2] >> level) + 1) / 2);
         gi_barrier(c, (RenderResource[]){RESOURCE_GI_ATLAS}, 1);
     }
 }

@@ -49,11 +49,11 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 // What a pass needs that writes or reads filtered light.
 #define SPEC_GI_IMAGES                                                                             \
     (SPEC_BIT(SPEC_GI_DIRECTIONS) | SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
-     SPEC_BIT(SPEC_GI_NEAREST_MIPS) | SPEC_BIT(SPEC_GI_CASCADES))
+     SPEC_BIT(SPEC_GI_MIPS) | SPEC_BIT(SPEC_GI_CASCADES))
 // What a pass over the screen needs that gathers from the voxels.
 #define SPEC_READ_VOXELS                                                                           \
     (SPEC_READ_GBUFFER | SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_GI_DIRECTIONS) |                 \
-     SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_NEAREST_MIPS) | SPEC_BIT(SPEC_GI_CASCADES) |       \
+     SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_MIPS) | SPEC_BIT(SPEC_GI_CASCADES) |               \
      SPEC_BIT(SPEC_GI_DIFFUSE) | SPEC_BIT(SPEC_GI_FEATURES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
      SPEC_BIT(SPEC_GI_RESOLUTION))
 
@@ -409,6 +409,10 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                 .compute = "gi_filter_mip.comp",
                                 .compute_byte = "gi_filter_mip_byte.comp",
                                 .spec_mask = SPEC_GI_IMAGES},
+    [PIPELINE_GI_FILTER_THIRDS] = {.label = "voxel filter between mips",
+                                   .compute = "gi_filter_thirds.comp",
+                                   .compute_byte = "gi_filter_thirds_byte.comp",
+                                   .spec_mask = SPEC_GI_IMAGES | SPEC_BIT(SPEC_GI_STEP)},
     [PIPELINE_GI_PROBES] = {.label = "probes",
                             .compute = "gi_probes.comp",
                             .spec_mask = SPEC_GI_IMAGES},
@@ -595,7 +599,9 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_LIGHT_BLOCKS] = packet_fits_light_blocks(packet),
         [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
         [SPEC_GI_FACES] = gi->faces,
-        [SPEC_GI_NEAREST_MIPS] = gi->mips == GI_MIPS_NEAREST,
+        [SPEC_GI_MIPS] = gi->mips == GI_MIPS_NEAREST ? GI_READ_NEAREST
+                         : gi_makes_thirds(packet)   ? GI_READ_THIRDS
+                                                     : GI_READ_LINEAR,
         [SPEC_GI_CASCADES] = gi->cascades,
         [SPEC_GI_DIFFUSE] = gi->diffuse,
         [SPEC_GI_FEATURES] = (gi->specular ? GI_FEATURE_SPECULAR : 0) |

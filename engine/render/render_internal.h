@@ -155,6 +155,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_LIGHT,
     PIPELINE_GI_FILTER_BASE, // level 0 of the atlas
     PIPELINE_GI_FILTER_MIP,
+    PIPELINE_GI_FILTER_THIRDS, // between its levels; step: number of the finer one & 1
     PIPELINE_GI_BOUNCE,
     PIPELINE_GI_IRRADIANCE, // of voxels, for diffuse = voxels
     PIPELINE_GI_PROBES,
@@ -476,6 +477,7 @@ void gi_dispatch_slots(const PassContext *c, u32 args);
 void gi_dispatch_words(const PassContext *c, u64 invocations);
 // Does the picture ask for the irradiance of voxels?
 bool gi_wants_irradiance(const Packet *packet);
+bool gi_makes_thirds(const Packet *packet); // GI_READ_THIRDS
 // Makes what one dispatch of a pass wrote visible to the next; for resources in STORAGE_COMPUTE.
 void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count);
 // Bytes of all that GI keeps on the device.

@@ -8,22 +8,25 @@
 
 enum { SIDE = 16, LEVELS_CAP = 5, CONES = 512 };
 
+#define WIDE_TAN 0.57735f // of a hemisphere's cones
+
 typedef struct Dice {
     u64 seed, stream, counter;
 } Dice;
 static f32 roll(Dice *dice) { return random_f32(dice->seed, dice->stream, dice->counter++); }
 
 typedef struct Volumes {
-    u32 faces, directions, nearest, levels; // see SPEC_GI_*
-    u32 atlas_side;                         // of a block's level 0
+    u32 faces, directions, mips, levels; // see SPEC_GI_*
+    u32 atlas_side;                      // of a block's level 0
     f32 base[SIDE * SIDE * SIDE][4];
     f32 *blocks[LEVELS_CAP][6]; // rgba, x fastest
+    f32 *thirds[LEVELS_CAP][6]; // GI_READ_THIRDS: between a level and the next
     Arena arena;
     GiRecord gi;
 } Volumes;
 
-static u16 half_from(f32 value) { // of positive numbers that a half holds exactly
-    if (value == 0.0f) return 0;
+static u16 half_from(f32 value) { // of positive numbers, rounded down; tiny ones are nothing
+    if (value < 0x1p-14f) return 0;
     u32 bits;
     memcpy(&bits, &value, sizeof bits);
     return (u16)((((bits >> 23) - 127 + 15) << 10) | (bits >> 13 & 0x3FF));
@@ -35,12 +38,12 @@ static void random_texel(Dice *random, f32 share, f32 out[4]) {
     for (u32 c = 0; c < 4; c++) out[c] = there ? (f32)(u32)(roll(random) * 65.0f) / 64.0f : 0.0f;
 }
 
-static void volumes_make(Volumes *v, u32 faces, u32 directions, u32 nearest, f32 share, u64 seed) {
+static void volumes_make(Volumes *v, u32 faces, u32 directions, u32 mips, f32 share, u64 seed) {
     memset(v, 0, sizeof *v);
     assert_true(arena_create(&v->arena, "volumes", MIB(16)));
     v->faces = faces;
     v->directions = directions;
-    v->nearest = nearest;
+    v->mips = mips;
     v->atlas_side = faces ? SIDE : SIDE / 2;
     Dice random = (Dice){seed, 1, 0};
     for (u32 i = 0; i < SIDE * SIDE * SIDE; i++) random_texel(&random, share, v->base[i]);
@@ -89,32 +92,65 @@ static void read_level(const f32 *texels, u32 side, const f32 p[3], f32 out[4]) 
     }
 }
 
+// Level `fine`, or what lies between it and the next one, at a texel's middle.
+static f32 thirds_share(u32 fine) { return fine & 1 ? 2.0f / 3.0f : 1.0f / 3.0f; }
+static void thirds_make(Volumes *v) {
+    for (u32 l = 0, side = v->atlas_side; l < v->levels; l++, side /= 2)
+        for (u32 d = 0; d < v->directions; d++) {
+            f32 *out = v->thirds[l][d] = ARENA_PUSH(&v->arena, f32, side * side * side * 4);
+            const f32 *fine = v->blocks[l][d];
+            for (u32 i = 0; i < side * side * side; i++) {
+                f32 middle[3], coarse[4];
+                const u32 at[3] = {i % side, i / side % side, i / (side * side)};
+                for (u32 a = 0; a < 3; a++) middle[a] = ((f32)at[a] + 0.5f) / (f32)side;
+                u32 next = MIN(l + 1, v->levels - 1);
+                read_level(v->blocks[next][d], v->atlas_side >> next, middle, coarse);
+                for (u32 c = 0; c < 4; c++)
+                    out[4 * i + c] =
+                        fine[4 * i + c] + (coarse[c] - fine[4 * i + c]) * thirds_share(l);
+            }
+        }
+}
+
 // One direction of the atlas. Blocks lie side by side along x: half a texel of the coarser level
 // that is read stays between them.
-static void read_block(const Volumes *v, u32 d, f32 level, const f32 p[3], f32 out[4]) {
+static void read_block(const Volumes *v, u32 d, f32 level, bool has_thirds, const f32 p[3],
+                       f32 out[4]) {
     level = clamp_f32(level, 0.0f, (f32)v->levels - 1.0f);
-    if (v->nearest) level = floorf(level + 0.5f);
+    // Next to a whole level cones read that one alone.
+    f32 whole = floorf(level + 0.5f);
+    if (v->mips == GI_READ_NEAREST || (!v->faces && fabsf(level - whole) < 0.01f)) level = whole;
     u32 fine = (u32)level, coarse = (u32)ceilf(level);
     f32 share = level - (f32)fine, half_texel = 0.5f * (f32)(1u << coarse) / (f32)v->atlas_side;
     f32 q[3] = {p[0], p[1], p[2]}, texels[2][4];
     if (v->directions == 6) q[0] = clamp_f32(q[0], half_texel, 1.0f - half_texel);
+    if (v->mips == GI_READ_THIRDS) q[2] = clamp_f32(q[2], half_texel, 1.0f - half_texel);
+    has_thirds = has_thirds && v->mips == GI_READ_THIRDS;
+    bool is_third = has_thirds && fabsf(share - thirds_share(fine)) < 0.01f;
+    if (is_third) { // read as if it were a level
+        half_texel = 0.5f * (f32)(1u << fine) / (f32)v->atlas_side;
+        q[0] = clamp_f32(p[0], half_texel, 1.0f - half_texel), q[2] = p[2];
+        read_level(v->thirds[fine][d], v->atlas_side >> fine, q, out);
+        return;
+    }
     read_level(v->blocks[fine][d], v->atlas_side >> fine, q, texels[0]);
     read_level(v->blocks[coarse][d], v->atlas_side >> coarse, q, texels[1]);
     for (u32 c = 0; c < 4; c++) out[c] = texels[0][c] + (texels[1][c] - texels[0][c]) * share;
 }
 
-static void read_volumes(const Volumes *v, f32 lod, const f32 p[3], const f32 d[3], f32 out[4]) {
+static void read_volumes(const Volumes *v, f32 lod, bool has_thirds, const f32 p[3], const f32 d[3],
+                         f32 out[4]) {
     f32 filtered[4] = {0};
     for (u32 a = 0; a < (v->directions == 6 ? 3u : 1u); a++) {
-        f32 texel[4], weight = v->directions == 6 ? d[a] * d[a] : 1.0f;
+        f32 texel[4], weight = v->directions == 1 ? 1.0f : v->faces ? fabsf(d[a]) : d[a] * d[a];
         u32 block = v->directions == 6 ? a * 2 + (d[a] < 0.0f ? 0 : 1) : 0;
-        read_block(v, block, lod - (v->faces ? 0.0f : 1.0f), p, texel);
+        read_block(v, block, lod - (v->faces ? 0.0f : 1.0f), has_thirds, p, texel);
         for (u32 c = 0; c < 4; c++) filtered[c] += texel[c] * weight;
     }
     memcpy(out, filtered, sizeof filtered);
     if (v->faces) return;
     f32 share = clamp_f32(lod, 0.0f, 1.0f), base[4];
-    if (v->nearest) share = floorf(share + 0.5f);
+    if (v->mips == GI_READ_NEAREST) share = floorf(share + 0.5f);
     read_level(&v->base[0][0], SIDE, p, base);
     for (u32 c = 0; c < 4; c++) out[c] = base[c] + (filtered[c] - base[c]) * share;
 }
@@ -144,8 +180,8 @@ static Result twin(const Volumes *v, const Cone *cone) {
         f32 diameter = 2.0f * cone->tan_half * t, texel[4];
         diameter = MAX(diameter, 1.0f);
         // With faces apart: finer texels, oftener, that count denser (see gi_cones.glsl).
-        f32 lod = log2f(diameter) - (v->faces ? log2f(3.0f) : 0.0f), factor = v->gi.cone[1];
-        read_volumes(v, MAX(lod, 0.0f), p, cone->direction, texel);
+        f32 lod = log2f(diameter) - (v->faces ? log2f(4.5f) : 0.0f), factor = v->gi.cone[1];
+        read_volumes(v, MAX(lod, 0.0f), cone->tan_half == WIDE_TAN, p, cone->direction, texel);
         if (v->faces) {
             factor *= 2.0f / 3.0f;
             f32 denser = MIN(3.0f, 1.0f / MAX(texel[3], 1e-3f));
@@ -186,32 +222,36 @@ static void trace(const Volumes *v, const Cone *cones, u32 step, Result *out) {
     gpu_upload_buffer(gpu, record, 0, &v->gi, sizeof v->gi);
     gpu_upload_buffer(gpu, list, 0, cones, CONES * sizeof *cones);
 
-    // Halves of all mips, blocks side by side.
+    // Halves of all mips, blocks side by side; what is between them above along z.
     Arena scratch;
     assert_true(arena_create(&scratch, "halves", MIB(8)));
     u16 *base = ARENA_PUSH(&scratch, u16, SIDE * SIDE * SIDE * 4);
     for (u32 i = 0; i < SIDE * SIDE * SIDE * 4; i++) base[i] = half_from((&v->base[0][0])[i]);
     u64 count = 0, at = 0;
+    u32 parts = v->mips == GI_READ_THIRDS ? 2 : 1;
     for (u32 l = 0, side = v->atlas_side; l < v->levels; l++, side /= 2)
-        count += (u64)side * side * side * v->directions * 4;
+        count += (u64)side * side * side * v->directions * parts * 4;
     u16 *atlas = ARENA_PUSH(&scratch, u16, count);
     for (u32 l = 0, side = v->atlas_side; l < v->levels; l++, side /= 2)
-        for (u32 row = 0; row < side * side; row++)
-            for (u32 d = 0; d < v->directions; d++)
+        for (u32 row = 0; row < side * side * parts; row++)
+            for (u32 d = 0; d < v->directions; d++) {
+                const f32 *from = row < side * side ? v->blocks[l][d] : v->thirds[l][d];
                 for (u32 i = 0; i < side * 4; i++)
-                    atlas[at++] = half_from(v->blocks[l][d][row * side * 4 + i]);
+                    atlas[at++] = half_from(from[row % (side * side) * side * 4 + i]);
+            }
     GpuTextureDesc volume = {.label = "base", .format = GPU_FORMAT_RGBA16F, .sampled = true};
     volume.width = volume.height = volume.depth = SIDE;
     GpuTexture base_texture = gpu_create_texture(gpu, &volume);
     gpu_upload_texture(gpu, base_texture, base, SIDE * SIDE * SIDE * 8);
     volume.label = "atlas";
     volume.width = v->atlas_side * v->directions;
-    volume.height = volume.depth = v->atlas_side;
+    volume.height = v->atlas_side;
+    volume.depth = v->atlas_side * parts;
     volume.mip_count = v->levels;
     GpuTexture atlas_texture = gpu_create_texture(gpu, &volume);
     gpu_upload_texture(gpu, atlas_texture, atlas, count * 2);
-    GpuSampler sampler =
-        gpu_create_sampler(gpu, &(GpuSamplerDesc){.label = "linear", .nearest_mips = v->nearest});
+    GpuSampler sampler = gpu_create_sampler(
+        gpu, &(GpuSamplerDesc){.label = "linear", .nearest_mips = v->mips == GI_READ_NEAREST});
 
     GpuBindGroupDesc group_desc = {.label = "cones", .layout = layout};
     for (u32 i = 0; i < desc.count; i++)
@@ -224,7 +264,7 @@ static void trace(const Volumes *v, const Cone *cones, u32 step, Result *out) {
     GpuBindGroup group = gpu_create_bind_group(gpu, &group_desc);
     u32 spec[SPEC_COUNT] = {[SPEC_GI_DIRECTIONS] = v->directions,
                             [SPEC_GI_FACES] = v->faces,
-                            [SPEC_GI_NEAREST_MIPS] = v->nearest,
+                            [SPEC_GI_MIPS] = v->mips,
                             [SPEC_GI_CASCADES] = 1,
                             [SPEC_GI_STEP] = step};
     GpuPipeline pipeline = gpu_fixture_compute(gpu, "test_cones.comp", layout, SPEC_COUNT, spec);
@@ -261,7 +301,7 @@ static void unit_vector(Dice *random, f32 out[3]) {
 
 // Starts in the box and a little beside it.
 static void random_cones(const Volumes *v, u64 seed, Cone *cones) {
-    static const f32 tans[] = {0.0087f, 0.05f, 0.2f, 0.4142f, 0.57735f, 1.0f, 1.7f};
+    static const f32 tans[] = {0.0087f, 0.05f, 0.2f, 0.4142f, WIDE_TAN, 1.0f, 1.7f};
     Dice random = (Dice){seed, 2, 0};
     for (u32 i = 0; i < CONES; i++) {
         Cone *cone = &cones[i];
@@ -271,17 +311,20 @@ static void random_cones(const Volumes *v, u64 seed, Cone *cones) {
         unit_vector(&random, cone->direction);
         cone->reach = i % 3 ? 1e9f : roll(&random) * 3.0f;
         if (i % 5 == 4) cone->first = 0.25f + roll(&random);
+        // As those of a hemisphere, whose lods are thirds.
+        if (v->mips == GI_READ_THIRDS && cone->tan_half == WIDE_TAN) cone->first = 0.866025f;
         if (i % 16 == 15) // along an axis
             for (u32 a = 0; a < 3; a++) cone->direction[a] = a == i / 16 % 3 ? 1.0f : 0.0f;
     }
 }
 
-static void check(u32 faces, u32 directions, u32 nearest, f32 share) {
+static void check(u32 faces, u32 directions, u32 mips, f32 share) {
     static Volumes v;
     static Cone cones[CONES];
     static Result results[CONES];
-    const u64 seed = 0x6C0 + faces * 4 + directions * 8 + nearest;
-    volumes_make(&v, faces, directions, nearest, share, seed);
+    const u64 seed = 0x6C0 + faces * 4 + directions * 8 + mips;
+    volumes_make(&v, faces, directions, mips, share, seed);
+    if (mips == GI_READ_THIRDS) thirds_make(&v);
     random_cones(&v, seed, cones);
     trace(&v, cones, 0, results);
     u32 other_steps = 0, traced = 0;
@@ -306,6 +349,7 @@ static void check(u32 faces, u32 directions, u32 nearest, f32 share) {
 
 TEST_GPU(gi_cones, directional_as_the_twin) { check(0, 6, 0, 0.2f); }
 TEST_GPU(gi_cones, nearest_mips_as_the_twin) { check(0, 6, 1, 0.2f); }
+TEST_GPU(gi_cones, thirds_as_the_twin) { check(0, 6, GI_READ_THIRDS, 0.2f); }
 TEST_GPU(gi_cones, isotropic_as_the_twin) { check(0, 1, 0, 0.2f); }
 TEST_GPU(gi_cones, faces_apart_as_the_twin) { check(1, 6, 0, 0.1f); }
 TEST_GPU(gi_cones, faces_apart_nearest_as_the_twin) { check(1, 6, 1, 0.1f); }

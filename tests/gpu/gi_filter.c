@@ -12,6 +12,7 @@
 typedef struct Filter {
     GiTwin twin; // shape, and the levels as they should be
     GiRecord gi;
+    bool thirds; // with what is between levels: gi_filter_thirds.glsl
     u32 voxels, slots, *masks, *places, *radiance;
     u32 counters[GI_COUNTER_COUNT];
     f32 *light;       // as gi_twin_filter reads it
@@ -93,7 +94,7 @@ typedef struct Device {
     GpuTexture base, atlas;
     GpuBindLayout layout;
     GpuBindGroup groups[GI_TWIN_LEVELS_CAP];
-    GpuPipeline base_steps[3], mip;
+    GpuPipeline base_steps[3], mip, thirds[2];
 } Device;
 #define IMAGES(use_from, use_to)                                                                   \
     (GpuBarrier[]) {                                                                               \
@@ -154,10 +155,11 @@ static void device_bind(Device *d, const Filter *f, GpuSampler sampler) {
     }
 }
 
-static void device_pipelines(Device *d, const GiTwin *twin) {
+static void device_pipelines(Device *d, const GiTwin *twin, bool thirds) {
     u32 spec[SPEC_COUNT] = {[SPEC_GI_DIRECTIONS] = twin->isotropic ? 1 : 6,
                             [SPEC_GI_FACES] = twin->apart,
                             [SPEC_GI_CASCADES] = twin->cascades,
+                            [SPEC_GI_MIPS] = thirds ? GI_READ_THIRDS : GI_READ_LINEAR,
                             [SPEC_GI_FORMAT] = twin->bytes};
     for (u32 step = 0; step < 3; step++) {
         spec[SPEC_GI_STEP] = step;
@@ -168,6 +170,12 @@ static void device_pipelines(Device *d, const GiTwin *twin) {
     d->mip =
         gpu_fixture_compute(d->gpu, twin->bytes ? "gi_filter_mip_byte.comp" : "gi_filter_mip.comp",
                             d->layout, SPEC_COUNT, spec);
+    for (u32 odd = 0; odd < 2; odd++) {
+        spec[SPEC_GI_STEP] = odd;
+        d->thirds[odd] = gpu_fixture_compute(
+            d->gpu, twin->bytes ? "gi_filter_thirds_byte.comp" : "gi_filter_thirds.comp", d->layout,
+            SPEC_COUNT, spec);
+    }
 }
 
 // As gi_filter.c does; the base volume is made by whoever lights voxels.
@@ -195,10 +203,11 @@ static void filter_run(Filter *f) {
         volume_of(d.gpu, "base", format, has_base ? twin->dims[0] : 2, has_base ? twin->dims[1] : 2,
                   has_base ? twin->dims[2] * twin->cascades : 2, 1, &f->base, &f->base_bytes);
     d.atlas = volume_of(d.gpu, "atlas", format, gi_twin_width(twin, 0), twin->block[1],
-                        twin->block[2] * twin->cascades, twin->levels, &f->atlas, &f->atlas_bytes);
+                        twin->block[2] * twin->cascades * (f->thirds ? 2 : 1), twin->levels,
+                        &f->atlas, &f->atlas_bytes);
     GpuSampler sampler = gpu_create_sampler(d.gpu, &(GpuSamplerDesc){.label = "filter"});
     device_bind(&d, f, sampler);
-    device_pipelines(&d, twin);
+    device_pipelines(&d, twin, f->thirds);
     d.masks_back = gpu_fixture_readback(d.gpu, f->voxels / 8ull * GI_MASK_COUNT);
     d.base_back = gpu_fixture_readback(d.gpu, f->base_bytes);
     d.atlas_back = gpu_fixture_readback(d.gpu, f->atlas_bytes);
@@ -224,6 +233,13 @@ static void filter_run(Filter *f) {
                          ((twin->block[1] >> level) + 3) / 4, (z + 1) / 2);
         gpu_cmd_barriers(cmd, IMAGES(GPU_USAGE_STORAGE_COMPUTE, GPU_USAGE_STORAGE_COMPUTE), 2);
     }
+    for (u32 level = 0; f->thirds && level + 1 < twin->levels; level++) {
+        gpu_cmd_bind_pipeline(cmd, d.thirds[level & 1]);
+        gpu_cmd_bind_group(cmd, 0, d.groups[level + 1]);
+        gpu_cmd_dispatch(cmd, (gi_twin_width(twin, level) + 7) / 8,
+                         ((twin->block[1] >> level) + 3) / 4, ((twin->block[2] >> level) + 1) / 2);
+        gpu_cmd_barriers(cmd, IMAGES(GPU_USAGE_STORAGE_COMPUTE, GPU_USAGE_STORAGE_COMPUTE), 2);
+    }
     gpu_cmd_barriers(cmd, IMAGES(GPU_USAGE_STORAGE_COMPUTE, GPU_USAGE_COPY_SOURCE), 2);
     gpu_cmd_copy_mips_to_buffer(cmd, d.base, d.base_back);
     gpu_cmd_copy_mips_to_buffer(cmd, d.atlas, d.atlas_back);
@@ -242,6 +258,7 @@ static void filter_run(Filter *f) {
         gpu_destroy_bind_group(d.gpu, d.groups[level]);
     for (u32 step = 0; step < 3; step++) gpu_destroy_pipeline(d.gpu, d.base_steps[step]);
     gpu_destroy_pipeline(d.gpu, d.mip);
+    for (u32 odd = 0; odd < 2; odd++) gpu_destroy_pipeline(d.gpu, d.thirds[odd]);
     gpu_destroy_sampler(d.gpu, sampler);
     gpu_destroy_texture(d.gpu, d.base);
     gpu_destroy_texture(d.gpu, d.atlas);
@@ -294,6 +311,48 @@ static void light_base(Filter *f) {
         }
 }
 
+// What lies between a level and the next at the middle of a texel, read as samplers do.
+static f32 between_levels(const GiTwin *twin, u32 level, u32 x, u32 y, u32 z, u32 channel) {
+    u32 side[3], low[3];
+    f32 share[3], coarse = 0.0f;
+    const u32 place[3] = {x % (twin->block[0] >> level), y, z};
+    for (u32 a = 0; a < 3; a++) {
+        side[a] = twin->block[a] >> (level + 1);
+        f32 at = ((f32)place[a] + 0.5f) * 0.5f - 0.5f;
+        at = at < 0.0f ? 0.0f : MIN(at, (f32)side[a] - 1.0f);
+        low[a] = (u32)at;
+        share[a] = at - (f32)low[a];
+    }
+    u32 block = x / (twin->block[0] >> level);
+    for (u32 corner = 0; corner < 8; corner++) {
+        f32 weight = 1.0f;
+        u32 at[3];
+        for (u32 a = 0; a < 3; a++) {
+            bool is_high = corner >> a & 1;
+            at[a] = MIN(low[a] + is_high, side[a] - 1);
+            weight *= is_high ? share[a] : 1.0f - share[a];
+        }
+        coarse += weight * gi_twin_texel(twin, level + 1, block, at[0], at[1], at[2])[channel];
+    }
+    f32 fine = gi_twin_texel(twin, level, block, place[0], y, z)[channel];
+    return fine + (coarse - fine) * (level & 1 ? 2.0f / 3.0f : 1.0f / 3.0f);
+}
+
+static void compare_thirds(const Filter *f, u32 level, u64 at) {
+    const GiTwin *twin = &f->twin;
+    u32 width = gi_twin_width(twin, level), height = twin->block[1] >> level;
+    // As in compare, of the coarser level; half a step more for what is stored here.
+    f32 step = f->twin.bytes ? 1.01f / 255.0f : 0x1p-10f;
+    for (u64 i = 0; i < gi_twin_texels(twin, level) * 4 && level + 1 < twin->levels; i++) {
+        u32 x = (u32)(i / 4 % width), y = (u32)(i / 4 / width % height);
+        f32 want = between_levels(twin, level, x, y, (u32)(i / 4 / width / height), i % 4);
+        f32 got = atlas_value(f, at + i), allowed = twin->bytes ? step : step * MAX(want, 0.01f);
+        if (!(fabsf(want - got) <= allowed * ((f32)level + 2.5f)))
+            fail_msg("above level %u, number %llu is %g, should be %g", level,
+                     (unsigned long long)i, (f64)got, (f64)want);
+    }
+}
+
 static void compare(Filter *f, const char *what) {
     gi_twin_free(&f->twin);
     gi_twin_filter(&f->twin, f->light);
@@ -308,6 +367,9 @@ static void compare(Filter *f, const char *what) {
                 fail_msg("%s: level %u, number %llu is %g, should be %g", what, level,
                          (unsigned long long)i, (f64)got, (f64)want);
         }
+        if (!f->thirds) continue;
+        compare_thirds(f, level, at);
+        at += gi_twin_texels(&f->twin, level) * 4;
     }
     u32 words = f->voxels / 32;
     for (u32 i = 0; i < words; i++)
@@ -315,9 +377,11 @@ static void compare(Filter *f, const char *what) {
 }
 
 // Twice: the second time other voxels are there, and what is gone must be so in all levels.
-static void check_chain(u32 x, u32 y, u32 z, u32 cascades, bool apart, bool isotropic, bool bytes) {
+static void check_filter(u32 x, u32 y, u32 z, u32 cascades, bool apart, bool isotropic, bool bytes,
+                         bool thirds) {
     Filter f;
     filter_open(&f, x, y, z, cascades, apart, isotropic, bytes);
+    f.thirds = thirds;
     u64 halves = bytes ? 1 : 2;
     if (!apart) f.base = calloc(f.voxels * 4ull, halves);
     for (u32 round = 0; round < 2; round++) {
@@ -330,6 +394,14 @@ static void check_chain(u32 x, u32 y, u32 z, u32 cascades, bool apart, bool isot
     filter_close(&f);
 }
 
+static void check_chain(u32 x, u32 y, u32 z, u32 cascades, bool apart, bool isotropic, bool bytes) {
+    check_filter(x, y, z, cascades, apart, isotropic, bytes, false);
+}
+
+TEST_GPU(gi_filter, thirds_as_the_twin) {
+    check_filter(32, 16, 64, 1, false, false, false, true);
+    check_filter(16, 32, 16, 1, false, false, true, true);
+}
 TEST_GPU(gi_filter, shared_as_the_twin) { check_chain(32, 16, 64, 1, false, false, false); }
 TEST_GPU(gi_filter, apart_as_the_twin) { check_chain(16, 32, 32, 1, true, false, false); }
 TEST_GPU(gi_filter, isotropic_as_the_twin) {
