@@ -57,15 +57,17 @@ static void check_levels(Studio *studio, bool apart, const f32 color[3]) {
     u32 side = apart ? SIDE : SIDE / 2;
     u64 texels = 0;
     for (u32 s = side; s > 0; s /= 2) texels += 6ull * s * s * s;
-    u16 *atlas = malloc(texels * 8);
+    u16 *atlas = malloc(2 * texels * 8);
     assert_non_null(atlas);
-    assert_int_equal(renderer_read_gi(studio->renderer, GI_VOLUME_ATLAS, atlas, texels * 8),
-                     texels * 8);
+    // Where lods between levels are made ahead the image is twice as deep, levels first.
+    u64 size = renderer_read_gi(studio->renderer, GI_VOLUME_ATLAS, atlas, 2 * texels * 8);
+    u64 halves = size / (texels * 8);
+    assert_true(size == halves * texels * 8 && (halves == 1 || halves == 2));
     // Faces of the wall: z = -3.4 m and -4.4 m in voxels of 0.25 m from -8 m.
     const u32 places[2] = {18, 14};
     u64 start = 0;
     // The last level is one texel, with the observer in it.
-    for (u32 s = side; s > 1; start += 6ull * s * s * s, s /= 2)
+    for (u32 s = side; s > 1; start += 6ull * s * s * s * halves, s /= 2)
         for (u32 face = 0; face < 2; face++)
             for (u32 i = 0; i < s * s; i++) {
                 u32 x = (4 + face) * s + i % s, y = i / s, z = places[face] * s / SIDE;
