@@ -60,7 +60,7 @@ vec3 voxel_light(Surface s, vec3 albedo) {
     vec3 start = gi_start_at(s.position, s.normal), sum = vec3(0.0);
     if (GI_TRACED != 0u) sum = gi_traced_light(s, start, GI_START + 1.0, true);
     vec3 arriving = vec3(0.0);
-    if (GI_DIFFUSE == 2u) arriving = gi_probe_light(s.position, s.normal, 8u).light;
+    if (GI_DIFFUSE == 2u) arriving = gi_probe_light(s.position, s.normal, 8u).rgb;
     if ((GI_DIFFUSE & 1u) != 0u)
         arriving = gi_hemisphere(start, s.normal, GI_START, gi_reach(), 6u,
                                  frame.sky_zenith.rgb * gi.scale.y,

@@ -30,10 +30,7 @@ vec3 gather_axis(uint face) {
 // Irradiance / pi at one of them.
 vec3 gather(uint face) {
     vec3 axis = gather_axis(face);
-    // As thick as a voxel is along the axis: beyond all voxels that the same plane passes through.
-    float thickness = dot(abs(axis), vec3(1.0));
-    vec3 start = position + axis * (gi.cone.w * gi.origin[cascade].w * thickness);
-    return gi_hemisphere(start, axis, GI_START, gi_reach(), 6u,
+    return gi_hemisphere(voxel_front(axis), axis, GI_START, gi_reach(), 6u,
                          gi_frame.sky_zenith.rgb * gi.scale.y,
                          gi_frame.sky_horizon.rgb * gi.scale.y)
         .light;

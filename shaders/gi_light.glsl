@@ -15,6 +15,7 @@
 #include "gi.glsl"
 #include "gi_voxel.glsl"
 #include "gi_visibility.glsl"
+#include "gi_probe_lookup.glsl"
 layout(constant_id = SPEC_ATTENUATION) const uint ATTENUATION = 0;
 layout(constant_id = SPEC_SHADOW) const uint SHADOW = 0;
 layout(constant_id = SPEC_DIRECTIONALS) const uint DIRECTIONAL_COUNT = 0;
@@ -43,8 +44,12 @@ const bool HAS_SPOTS = (GI_VISIBILITY & GI_VISIBILITY_SPOTS) != 0u;
 const bool IN_BLOCK = (GI_VISIBILITY & GI_VISIBILITY_BLOCK) != 0u;
 const float PI = 3.14159265358979;
 // Steps: 0 light; 1 light, but the base volume stays as it is, which the bounce still reads; 2 the
-// whole image of visibility becomes 1; 3 RADIANCE goes to the base volume (faces shared).
-const uint STEP_KEEP_BASE = 1u, STEP_CLEAR_VISIBILITY = 2u, STEP_STORE_BASE = 3u;
+// whole image of visibility becomes 1; 3 RADIANCE goes to the base volume (faces shared); 4 light, and
+// what the probes say of light that went round (feedback).
+const uint STEP_KEEP_BASE = 1u, STEP_CLEAR_VISIBILITY = 2u, STEP_STORE_BASE = 3u,
+           STEP_ADD_PROBES = 4u;
+// A closed room of perfectly white walls would grow ever brighter.
+const float FEEDBACK_ALBEDO = 0.95;
 
 // Sums; faces shared: `whole` alone. Not an array: the software driver would keep it in memory.
 vec3 whole, light_0, light_1, light_2, light_3, light_4, light_5;
@@ -165,6 +170,35 @@ void add_directionals() {
     }
 }
 
+// --- Light that went round ---
+
+// Probes know the six axes apart. With a mean normal one look-up serves all; else one for the faces
+// on the positive side, and one for the others.
+void add_probes(uint slot) {
+    vec3 albedo = voxel_albedo(slot);
+    vec3 share = PI * min(vec3(1.0), FEEDBACK_ALBEDO / max(albedo, vec3(1e-3)));
+    bool by_mean = GI_FACES == 0u && normal != vec3(0.0);
+    vec3 on = by_mean ? ahead + behind : ahead;
+    for (uint side = 0u; side < (by_mean ? 1u : 2u); side++) {
+        vec3 facing = by_mean ? normal : side == 0u ? on : -on;
+        facing *= inversesqrt(max(dot(facing, facing), 1e-12));
+        uint count = on != vec3(0.0) ? 4u : 0u;
+        GiProbeLight axes = gi_probe_axes(voxel_front(facing), facing, count, true);
+        vec3 x = axes.x.rgb * share, y = axes.y.rgb * share, z = axes.z.rgb * share;
+        if (GI_FACES == 0u) {
+            whole += x * on.x + y * on.y + z * on.z;
+        } else {
+            light_0 += side == 0u ? x : vec3(0.0);
+            light_1 += side == 1u ? x : vec3(0.0);
+            light_2 += side == 0u ? y : vec3(0.0);
+            light_3 += side == 1u ? y : vec3(0.0);
+            light_4 += side == 0u ? z : vec3(0.0);
+            light_5 += side == 1u ? z : vec3(0.0);
+        }
+        on = behind;
+    }
+}
+
 // --- The result ---
 
 void store_face(uint slot, uint f, vec3 sent) {
@@ -216,5 +250,6 @@ void main() {
     asked = seen = 0.0;
     add_directionals();
     add_locals();
+    if (GI_STEP == STEP_ADD_PROBES) add_probes(min(gl_GlobalInvocationID.x, count - 1u));
     if (gl_GlobalInvocationID.x < count) store(gl_GlobalInvocationID.x);
 }

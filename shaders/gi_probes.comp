@@ -18,7 +18,7 @@
 layout(local_size_x = 64) in;
 
 layout(std140, set = 0, binding = BUILD_FRAME) uniform FrameBuffer { FrameRecord frame; };
-layout(set = 0, binding = BUILD_PROBES, rgba16f) writeonly uniform image3D probes;
+layout(set = 0, binding = BUILD_PROBES_STORAGE, rgba16f) writeonly uniform image3D probes;
 // Probes first, first + stride, ... (count of them) are traced.
 layout(push_constant) uniform Push { uint first, stride, count; };
 

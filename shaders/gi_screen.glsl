@@ -61,10 +61,10 @@ GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, bool is_on) {
     vec3 start = gi_start(g);
     float first = gi_first(pixel);
     if (GI_DIFFUSE == 2u) {
-        GiProbeLight probes = gi_probe_light(g.position, g.normal, is_on ? 8u : 0u);
-        result.diffuse.rgb = probes.light;
+        vec4 probes = gi_probe_light(g.position, g.normal, is_on ? 8u : 0u);
+        result.diffuse.rgb = probes.rgb;
         if ((GI_FEATURES & GI_FEATURE_AO) != 0u)
-            result.diffuse.a = mix(gi.strength.z, 1.0, probes.open);
+            result.diffuse.a = mix(gi.strength.z, 1.0, probes.a);
     } else if (GI_DIFFUSE == 1u || (GI_FEATURES & GI_FEATURE_AO) != 0u) {
         GiHemisphere sum =
             gi_hemisphere(start, g.normal, first, gi_reach(), is_on ? 6u : 0u, zenith, horizon);

@@ -66,6 +66,13 @@ void voxel_load(uint slot) {
     }
 }
 
+// Before the voxel, towards a unit vector: as far off as a voxel is thick along it, beyond all voxels
+// that the same plane passes through.
+vec3 voxel_front(vec3 axis) {
+    float thickness = dot(abs(axis), vec3(1.0));
+    return position + axis * (gi.cone.w * gi.origin[cascade].w * thickness);
+}
+
 // Slots that there are; those of lanes beyond do not count.
 uint voxel_count() {
     return min(gi_counters[GI_COUNTER_STATIC] + gi_counters[GI_COUNTER_DYNAMIC],

@@ -118,14 +118,15 @@ typedef struct MeshVertex {
 #define BUILD_SHADOW_MAP    18 // sampled, comparison
 #define BUILD_BASE          19 // sampled
 #define BUILD_ATLAS         20 // sampled
-#define BUILD_FIRST_STORAGE_IMAGE 21
-#define BUILD_BASE_STORAGE  21 // storage image, format of SPEC_GI_FORMAT
-#define BUILD_IRRADIANCE    22 // storage image rgba16f
-#define BUILD_VISIBILITY    23 // storage image r8
-#define BUILD_PROBES        24 // storage image rgba16f
-#define BUILD_MIP_SOURCE    25 // storage image: a level of the atlas
-#define BUILD_MIP_TARGET    26 // the next one
-#define BUILD_COUNT         27
+#define BUILD_PROBES        21 // sampled
+#define BUILD_FIRST_STORAGE_IMAGE 22
+#define BUILD_BASE_STORAGE  22 // storage image, format of SPEC_GI_FORMAT
+#define BUILD_IRRADIANCE    23 // storage image rgba16f
+#define BUILD_VISIBILITY    24 // storage image r8
+#define BUILD_PROBES_STORAGE 25 // storage image rgba16f
+#define BUILD_MIP_SOURCE    26 // storage image: a level of the atlas
+#define BUILD_MIP_TARGET    27 // the next one
+#define BUILD_COUNT         28
 
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---

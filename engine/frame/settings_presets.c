@@ -11,7 +11,7 @@
 const SettingPreset setting_presets[] = {
     {"lavapipe",
      "gi.grid=64,gi.cascades=1,gi.format=half,gi.solid=off,gi.cosine=weighted,gi.faces=shared,"
-     "gi.filter=directional,gi.bounces=2,gi.feedback=off,gi.diffuse=probes,gi.specular=off,"
+     "gi.filter=directional,gi.bounces=2,gi.feedback=on,gi.diffuse=probes,gi.specular=off,"
      "gi.ao=on,gi.resolution=quarter,gi.dither=off,gi.mips=nearest,gi.share=4,gi.step_factor=0.5,"
      "gi.diffuse_aperture=60",
      "a CPU that draws"},

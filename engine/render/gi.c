@@ -306,7 +306,9 @@ static void decide(Renderer *renderer, const Packet *packet) {
     gi->voxelise_dynamic = dynamic_is_due(gi, packet) || warming_up;
     gi->relight = gi->voxelise_static || gi->voxelise_dynamic || !gi->has_lit ||
                   gi->light_key != wanted->light_key;
-    if (gi->relight || gi->is_cold) gi->feedback_left = GI_FEEDBACK_FRAMES;
+    // A round through the probes takes as many frames as they have turns.
+    u32 turns = gi_bounces_by_probes(&wanted->params) ? wanted->params.share : 1;
+    if (gi->relight || gi->is_cold) gi->feedback_left = GI_FEEDBACK_FRAMES * turns;
     if (wanted->params.feedback && gi->feedback_left > 0) {
         gi->relight = true;
         gi->feedback_left--;
@@ -413,11 +415,12 @@ static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
     b[BUILD_SHADOW_MAP] = texture(r, RESOURCE_SHADOW_MAP, r->sampler_shadow);
     b[BUILD_BASE] = texture(r, RESOURCE_GI_BASE, r->gi_sampler_linear);
     b[BUILD_ATLAS] = texture(r, RESOURCE_GI_ATLAS, r->gi_sampler_linear);
+    b[BUILD_PROBES] = texture(r, RESOURCE_GI_PROBES, r->gi_sampler_linear);
     const GpuSampler none = {0};
     b[BUILD_BASE_STORAGE] = texture(r, RESOURCE_GI_BASE, none);
     b[BUILD_IRRADIANCE] = texture(r, RESOURCE_GI_IRRADIANCE, none);
     b[BUILD_VISIBILITY] = texture(r, RESOURCE_GI_VISIBILITY, none);
-    b[BUILD_PROBES] = texture(r, RESOURCE_GI_PROBES, none);
+    b[BUILD_PROBES_STORAGE] = texture(r, RESOURCE_GI_PROBES, none);
     b[BUILD_MIP_SOURCE] = b[BUILD_MIP_TARGET] = texture(r, RESOURCE_GI_ATLAS, none);
     b[BUILD_MIP_SOURCE].mip = level > 0 ? level - 1 : 0;
     b[BUILD_MIP_TARGET].mip = level;

@@ -13,24 +13,34 @@
 // adds what it reads of the last frame's images; one filter writes the sum. A light that moves or
 // goes out takes its bounces along within a few frames. A frame that must not hang on earlier ones
 // (PACKET_COLD, or nothing there) makes all rounds by itself.
+// Feedback where there are probes: these keep what went round, and lighting a voxel adds what they
+// say of it. No cones are traced but the probes' own (as Majercik et al. 2019, "Dynamic diffuse
+// global illumination with ray-traced irradiance fields", light what their rays hit).
 #include "passes.h"
 
 // Each round after the first counts at most the walls' albedo times what the one before did: of
 // walls with 0.7, this many reach three quarters of all light that goes round.
 #define FEEDBACK_ROUNDS 4
 
-enum { STEP_LIGHT, STEP_KEEP_BASE, STEP_CLEAR_VISIBILITY, STEP_STORE_BASE }; // gi_light.glsl
-enum { STEP_BOUNCE, STEP_FEEDBACK };                                         // gi_bounce.comp
+// gi_light.glsl
+enum { STEP_LIGHT, STEP_KEEP_BASE, STEP_CLEAR_VISIBILITY, STEP_STORE_BASE, STEP_ADD_PROBES };
+enum { STEP_BOUNCE, STEP_FEEDBACK }; // gi_bounce.comp
 
 static bool is_relit(const PassContext *c) { return gi_is_on(c) && c->renderer->gi.relight; }
 static bool has_base(const PassContext *c) { return c->packet->gi.params.faces == GI_FACES_SHARED; }
 
+bool gi_bounces_by_probes(const GiParams *params) {
+    return params->feedback && params->diffuse == GI_DIFFUSE_PROBES;
+}
 bool gi_bounces(const PassContext *c) {
     const GiParams *params = &c->packet->gi.params;
+    if (gi_bounces_by_probes(params) && !c->renderer->gi.is_cold) return false;
     return is_relit(c) && (params->bounces > 1 || params->feedback);
 }
 bool gi_feeds_back(const PassContext *c) {
-    return is_relit(c) && c->packet->gi.params.feedback && !c->renderer->gi.is_cold;
+    const GiParams *params = &c->packet->gi.params;
+    return is_relit(c) && params->feedback && !gi_bounces_by_probes(params) &&
+           !c->renderer->gi.is_cold;
 }
 
 // One invocation a slot.
@@ -58,10 +68,15 @@ static void light_record(const PassContext *c) {
     const GiState *gi = &c->renderer->gi;
     // Nothing is in the way of what is not voxelised.
     if (gi->voxelise_static && (gi->voxel_shadows & GI_VISIBILITY_KEPT)) clear_visibility(c);
-    by_slot(c, PIPELINE_GI_LIGHT, gi_feeds_back(c) ? STEP_KEEP_BASE : STEP_LIGHT);
+    bool has_probes = gi_bounces_by_probes(&c->packet->gi.params) && !gi->is_cold;
+    u32 step = gi_feeds_back(c) ? STEP_KEEP_BASE : has_probes ? STEP_ADD_PROBES : STEP_LIGHT;
+    by_slot(c, PIPELINE_GI_LIGHT, step);
 }
 static void light_again_record(const PassContext *c) {
     by_slot(c, PIPELINE_GI_LIGHT, STEP_KEEP_BASE);
+}
+static void add_probes_record(const PassContext *c) {
+    by_slot(c, PIPELINE_GI_LIGHT, STEP_ADD_PROBES);
 }
 static void store_record(const PassContext *c) { by_slot(c, PIPELINE_GI_LIGHT, STEP_STORE_BASE); }
 
@@ -70,12 +85,15 @@ static void store_record(const PassContext *c) { by_slot(c, PIPELINE_GI_LIGHT, S
         USE(GI_MASKS, STORAGE_READ_COMPUTE), USE(GI_VOXELS, STORAGE_READ_COMPUTE),                 \
             USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE), USE(GI_RADIANCE, STORAGE_COMPUTE),           \
             USE(GI_COUNTERS, INDIRECT), USE(GI_BASE, STORAGE_COMPUTE),                             \
-            USE(GI_VISIBILITY, STORAGE_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE)                  \
+            USE(GI_VISIBILITY, STORAGE_COMPUTE), USE(GI_PROBES, SAMPLED_COMPUTE),                  \
+            USE(SHADOW_MAP, SAMPLED_COMPUTE)                                                       \
     }
-const Pass gi_light_pass = {"voxel light", LIGHT_USES, 8, light_record, is_relit, NULL};
-static const Pass light_again_pass = {"voxel light again", LIGHT_USES, 8,
+const Pass gi_light_pass = {"voxel light", LIGHT_USES, 9, light_record, is_relit, NULL};
+static const Pass light_again_pass = {"voxel light again", LIGHT_USES, 9,
                                       light_again_record,  NULL,       NULL};
-static const Pass store_pass = {"voxel bounce store", LIGHT_USES, 8, store_record, has_base, NULL};
+static const Pass store_pass = {"voxel bounce store", LIGHT_USES, 9, store_record, has_base, NULL};
+static const Pass add_probes_pass = {"voxel light again", LIGHT_USES, 9,
+                                     add_probes_record,   NULL,       NULL};
 
 // --- Bounces ---
 
@@ -90,12 +108,16 @@ static const Pass gather_pass = {
     "voxel bounce", {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE)}, 7, gather_record, NULL, NULL};
 
 static void bounce_expand(const PassContext *c) {
-    bool all_rounds = c->packet->gi.params.feedback && !gi_feeds_back(c);
+    const GiParams *params = &c->packet->gi.params;
+    bool all_rounds = params->feedback && !gi_feeds_back(c);
     for (u32 round = 0; round < (all_rounds ? FEEDBACK_ROUNDS : 1); round++) {
-        if (round > 0) {
-            pass_run(c, &gi_refilter_pass);
-            pass_run(c, &light_again_pass);
+        if (round > 0) pass_run(c, &gi_refilter_pass);
+        if (gi_bounces_by_probes(params)) {
+            pass_run(c, &gi_probes_pass);
+            pass_run(c, &add_probes_pass);
+            continue;
         }
+        if (round > 0) pass_run(c, &light_again_pass);
         pass_run(c, &gather_pass);
         pass_run(c, &store_pass);
     }

@@ -63,8 +63,10 @@ extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, clu
 // gi_voxelise.c, gi_light.c, gi_filter.c, gi_probes.c: the voxels, from the shadow map on
 extern const Pass gi_fresh_pass, gi_static_pass, gi_dynamic_pass, gi_light_pass, gi_filter_pass,
     gi_bounce_pass, gi_refilter_pass, gi_irradiance_pass, gi_probes_pass;
-// Are there bounces to add in this frame, and do they read what the last frame left in the images
-// (which are then filtered once, after the bounce)?
+// Do probes keep what bounces on from frame to frame (else the filtered images do)?
+bool gi_bounces_by_probes(const GiParams *params);
+// Are there bounces to add in this frame after its light, and do they read what the last frame left
+// in the images (which are then filtered once, after the bounce)?
 bool gi_bounces(const PassContext *c);
 bool gi_feeds_back(const PassContext *c);
 // gi.c

@@ -8,7 +8,8 @@
 
 #define WIDTH  160
 #define HEIGHT 90
-#define COMMON "gi.enabled=on,gi.grid=32,gi.bounces=1,gi.diffuse=probes,gi.probe_spacing=0.8"
+#define COMMON                                                                                     \
+    "gi.enabled=on,gi.grid=32,gi.bounces=1,gi.feedback=off,gi.diffuse=probes,gi.probe_spacing=0.8"
 
 typedef struct Probes {
     u32 size[3], count;

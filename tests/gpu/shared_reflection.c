@@ -128,6 +128,8 @@ static const struct {
     {"gi_atlas", 0, BUILD_ATLAS},
     {"gi_atlas", 2, BINDING_GI_ATLAS},
     {"gi_atlas_nearest_mip", 2, BINDING_GI_ATLAS_NEAREST_MIP},
+    {"gi_probes", 0, BUILD_PROBES},
+    {"gi_probes", 2, BINDING_GI_PROBES},
 };
 
 // --- What SPIR-V says ---
