@@ -105,21 +105,23 @@ bool gi_occupied(uint bit) {
              gi_masks[gi_mask_word(GI_MASK_DYNAMIC, bit)]) >> (bit & 31u) & 1u) != 0u;
 }
 
-// Slots are ranks: gi_ranks[word of a layer] = set bits in all words before it, the static layer
-// first, then the dynamic one. So static voxels have slots 0.., dynamic ones follow, in the order
-// of their bits.
+// Slots are ranks: set bits before a voxel's own, in the static layer first, then in the dynamic one.
+// So static voxels have slots 0.., dynamic ones follow, in the order of their bits. gi_ranks tells the
+// bits before every GI_RANK_WORDS words of a layer (a layer is a whole number of them); the few words
+// between are counted.
+uint gi_rank(uint layer, uint bit) {
+    uint word = gi_mask_word(layer, bit), first = word & ~(GI_RANK_WORDS - 1u);
+    uint rank = gi_ranks[first / GI_RANK_WORDS];
+    for (uint i = 0u; i < GI_RANK_WORDS - 1u; i++)
+        rank += first + i < word ? uint(bitCount(gi_masks[first + i])) : 0u;
+    return rank + uint(bitCount(gi_masks[word] & ((1u << (bit & 31u)) - 1u)));
+}
 const uint GI_NO_SLOT = 0xffffffffu;
 // Of an occupied voxel; GI_NO_SLOT for empty ones and those that found no room.
 uint gi_slot(uint bit) {
-    uint fixed_word = gi_mask_word(GI_MASK_STATIC, bit);
-    uint moved_word = gi_mask_word(GI_MASK_DYNAMIC, bit);
-    uint fixed_mask = gi_masks[fixed_word], moved_mask = gi_masks[moved_word];
-    uint single = 1u << (bit & 31u);
-    bool is_fixed = (fixed_mask & single) != 0u;
-    uint before = (is_fixed ? fixed_mask : moved_mask) & (single - 1u);
-    uint slot = gi_ranks[is_fixed ? fixed_word : moved_word] + uint(bitCount(before));
-    bool is_there = ((fixed_mask | moved_mask) & single) != 0u && slot < gi.counts.z;
-    return is_there ? slot : GI_NO_SLOT;
+    bool is_fixed = gi_has(GI_MASK_STATIC, bit);
+    uint slot = gi_rank(is_fixed ? GI_MASK_STATIC : GI_MASK_DYNAMIC, bit);
+    return gi_occupied(bit) && slot < gi.counts.z ? slot : GI_NO_SLOT;
 }
 
 uint gi_pack_place(uvec3 place) {

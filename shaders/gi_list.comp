@@ -15,7 +15,7 @@ void main() {
     if (at >= words) return;
     uint word = (draw.how.x & GI_DRAW_DYNAMIC) * words + at, mask = gi_masks[word];
     if (mask == 0u) return;
-    uint slot = gi_ranks[word], cap = gi_flow.counts.z;
+    uint slot = gi_rank(draw.how.x & GI_DRAW_DYNAMIC, at << 5), cap = gi_flow.counts.z;
     uint shift_x = uint(findMSB(dims.x)), shift_y = uint(findMSB(dims.y));
     for (; mask != 0u && slot < cap; slot++) {
         uint bit = at << 5 | uint(findLSB(mask));

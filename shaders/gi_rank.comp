@@ -1,8 +1,8 @@
 #version 460
-// gi_rank.comp: how many voxels are set before each word of a layer of the masks: with it a voxel's
-// bit says its slot, the same on every run. A scan in three steps:
+// gi_rank.comp: how many voxels are set before every GI_RANK_WORDS words of a layer of the masks: with
+// it a voxel's bit says its slot (gi_rank), the same on every run. A scan in three steps:
 // 0: set bits of each block of words. 1, one group: what lies before each block, and the counters.
-// 2: what lies before each word.
+// 2: what lies before each rank's words.
 #extension GL_GOOGLE_include_directive : require
 #define GI_BUILD
 #include "gi.glsl"
@@ -73,7 +73,7 @@ void main() {
             gi_counters[GI_COUNTER_BLOCKS + i] = at;
             at += own;
         } else {
-            gi_ranks[base + i] = at;
+            if (i % GI_RANK_WORDS == 0u) gi_ranks[(base + i) / GI_RANK_WORDS] = at;
             at += uint(bitCount(gi_masks[base + i]));
         }
     }

@@ -435,7 +435,7 @@ void vox_emit(VoxTriangle t, VoxSurface s, ivec3 v) {
         if (is_there) atomicOr(gi_masks[word], single);
     } else {
         uint mask = gi_masks[word], first = layer == 0u ? 0u : gi_counters[GI_COUNTER_STATIC];
-        uint slot = gi_ranks[word] + uint(bitCount(mask & (single - 1u)));
+        uint slot = gi_rank(layer, bit);
         uint in_window = slot - first - draw.how.y;
         VoxFragment f = vox_fragment(t, s, v);
         if ((mask & single) != 0u && f.is_there && in_window < GI_WINDOW_SLOTS &&

@@ -106,7 +106,7 @@ typedef struct MeshVertex {
 #define BUILD_MESH_INDICES  7  // uint[], storage: all meshes
 #define BUILD_INSTANCES     8  // InstanceRecord[], storage: the packet's gi_instances
 #define BUILD_MASKS         9  // uint[], storage: a bit a voxel, in layers (GI_MASK_*)
-#define BUILD_RANKS         10 // uint[], storage: set bits before each word of the masks
+#define BUILD_RANKS         10 // uint[], storage: set bits before every GI_RANK_WORDS words of the masks
 #define BUILD_VOXELS        11 // uint[], storage: place of each occupied voxel (GI_VOXEL_*), by slot
 #define BUILD_ATTRIBUTES    12 // uint[], storage: GI_ATTRIBUTE_WORDS a slot
 #define BUILD_ACCUMULATORS  13 // uint[], storage: sums of what falls into a voxel
@@ -293,6 +293,7 @@ typedef struct MeshVertex {
 #define GI_SUM_EMISSION_LOW  13 // rgb: the low sum_bits bits
 #define GI_SUM_EMISSION_HIGH 16 // and the bits above
 #define GI_SUM_WORDS         19
+#define GI_RANK_WORDS        4    // words of the masks that share a rank
 #define GI_RANK_BLOCK        2048 // words of the masks that a group counts
 // BUILD_COUNTERS goes on behind its counters: set bits of each block of words.
 #define GI_COUNTER_BLOCKS    GI_COUNTER_COUNT

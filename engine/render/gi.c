@@ -210,7 +210,7 @@ u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams
     case RESOURCE_GI_MASKS:
         return layer * (params->solid ? GI_MASK_COUNT : GI_MASK_SOLID);
     case RESOURCE_GI_RANKS:
-        return layer * (GI_MASK_DYNAMIC + 1);
+        return layer * (GI_MASK_DYNAMIC + 1) / GI_RANK_WORDS;
     case RESOURCE_GI_VOXELS:
         return slots * word;
     case RESOURCE_GI_ATTRIBUTES:

@@ -10,9 +10,10 @@
 // Ranks count bits, and places are those of the bits, in their order.
 static void assert_slots(const VoxelVolumes *v, const Packet *packet) {
     const u32 *dims = packet->gi.record.dims;
-    u32 slot = 0;
+    u32 slot = 0, rank = 0;
     for (u32 w = 0; w < 2 * v->words; w++) {
-        if (v->masks[w]) assert_int_equal(v->ranks[w], slot);
+        if (w % GI_RANK_WORDS == 0) rank = slot;
+        if (v->masks[w]) assert_int_equal(v->ranks[w / GI_RANK_WORDS], rank);
         for (u32 mask = v->masks[w]; mask; mask &= mask - 1, slot++) {
             u32 bit = w % v->words * 32 + (u32)__builtin_ctz(mask);
             u32 x = bit % dims[0], y = bit / dims[0] % dims[1], z = bit / (dims[0] * dims[1]);

@@ -28,7 +28,7 @@ VoxelVolumes voxel_draw(Studio *studio, const Packet *packet) {
     assert_int_equal(v.counters[GI_COUNTER_LOST], 0);
     v.slots = v.counters[GI_COUNTER_STATIC] + v.counters[GI_COUNTER_DYNAMIC];
     v.masks = voxel_read_words(studio, GI_VOLUME_MASKS, v.words * 2);
-    v.ranks = voxel_read_words(studio, GI_VOLUME_RANKS, v.words * 2);
+    v.ranks = voxel_read_words(studio, GI_VOLUME_RANKS, v.words * 2 / GI_RANK_WORDS);
     v.voxels = voxel_read_words(studio, GI_VOLUME_VOXELS, v.slots);
     v.attributes = voxel_read_words(studio, GI_VOLUME_ATTRIBUTES, v.slots * GI_ATTRIBUTE_WORDS);
     return v;
@@ -39,8 +39,8 @@ void voxel_assert_same(const VoxelVolumes *a, const VoxelVolumes *b, const char 
     if (memcmp(a->masks, b->masks, a->words * 8ull) != 0) fail_msg("%s: other voxels", what);
     if (memcmp(a->counters, b->counters, sizeof a->counters) != 0)
         fail_msg("%s: other counters", what);
-    for (u32 w = 0; w < 2 * a->words; w++)
-        if (a->masks[w] && a->ranks[w] != b->ranks[w]) fail_msg("%s: other ranks", what);
+    if (memcmp(a->ranks, b->ranks, a->words * 8ull / GI_RANK_WORDS) != 0)
+        fail_msg("%s: other ranks", what);
     if (memcmp(a->voxels, b->voxels, a->slots * 4ull) != 0) fail_msg("%s: other places", what);
     for (u32 i = 0; i < a->slots * GI_ATTRIBUTE_WORDS; i++)
         if (a->attributes[i] != b->attributes[i])
