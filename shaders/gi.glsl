@@ -26,6 +26,7 @@ layout(constant_id = SPEC_GI_VISIBILITY) const uint GI_VISIBILITY = 0;
 layout(constant_id = SPEC_GI_FORMAT) const uint GI_FORMAT = 0;
 layout(constant_id = SPEC_GI_RESOLUTION) const uint GI_RESOLUTION = 0;
 layout(constant_id = SPEC_GI_TRACED) const uint GI_TRACED = 0;
+layout(constant_id = SPEC_GI_BRICKS) const uint GI_BRICKS = 0;
 
 // --- Bindings ---
 
@@ -51,9 +52,13 @@ layout(std430, set = 0, binding = BUILD_ACCUMULATORS) buffer GiAccumulatorBuffer
     uint gi_accumulators[];
 };
 layout(std430, set = 0, binding = BUILD_RADIANCE) buffer GiRadianceBuffer { uint gi_radiance[]; };
+layout(std430, set = 0, binding = BUILD_RADIANCE_2) buffer GiRadiance2Buffer {
+    uint gi_radiance_2[];
+};
 layout(std430, set = 0, binding = BUILD_COUNTERS) buffer GiCounterBuffer { uint gi_counters[]; };
 layout(set = 0, binding = BUILD_BASE) uniform sampler3D gi_base;
 layout(set = 0, binding = BUILD_ATLAS) uniform sampler3D gi_atlas;
+layout(set = 0, binding = BUILD_BRICKS) uniform sampler3D gi_bricks;
 #endif
 
 #ifdef GI_SCREEN
@@ -77,6 +82,7 @@ layout(std430, set = 2, binding = BINDING_GI_ATTRIBUTES) readonly buffer GiAttri
 layout(set = 2, binding = BINDING_GI_BASE) uniform sampler3D gi_base;
 layout(set = 2, binding = BINDING_GI_ATLAS) uniform sampler3D gi_atlas;
 layout(set = 2, binding = BINDING_GI_ATLAS_NEAREST_MIP) uniform sampler3D gi_atlas_nearest_mip;
+layout(set = 2, binding = BINDING_GI_BRICKS) uniform sampler3D gi_bricks;
 #endif
 
 // --- World and voxels: the one pair that everybody uses ---
@@ -180,9 +186,10 @@ float gi_face(uvec2 words, uint face) {
 
 // --- Radiance of a slot: half floats, rgb premultiplied, a opacity ---
 
-// Faces that a slot has numbers for.
-uint gi_radiance_faces() { return GI_FACES != 0u ? 6u : 1u; }
-uint gi_radiance_word(uint slot, uint face) { return (slot * gi_radiance_faces() + face) * 2u; }
+// Of a slot's numbers for a face; with faces apart those of 3..5 lie in the second buffer.
+uint gi_radiance_word(uint slot, uint face) {
+    return GI_FACES != 0u ? (slot * 3u + face % 3u) * 2u : slot * 2u;
+}
 uvec2 gi_pack_radiance(vec4 radiance) {
     vec4 c = clamp(radiance, vec4(0.0), vec4(65000.0, 65000.0, 65000.0, 1.0));
     return uvec2(packHalf2x16(c.xy), packHalf2x16(c.zw));
@@ -193,13 +200,20 @@ vec4 gi_unpack_radiance(uvec2 words) {
 #ifdef GI_BUILD
 vec4 gi_load_radiance(uint slot, uint face) {
     uint word = gi_radiance_word(slot, face);
+    if (GI_FACES != 0u && face >= 3u)
+        return gi_unpack_radiance(uvec2(gi_radiance_2[word], gi_radiance_2[word + 1u]));
     return gi_unpack_radiance(uvec2(gi_radiance[word], gi_radiance[word + 1u]));
 }
 void gi_store_radiance(uint slot, uint face, vec4 radiance) {
     uint word = gi_radiance_word(slot, face);
     uvec2 packed = gi_pack_radiance(radiance);
-    gi_radiance[word] = packed.x;
-    gi_radiance[word + 1u] = packed.y;
+    if (GI_FACES != 0u && face >= 3u) {
+        gi_radiance_2[word] = packed.x;
+        gi_radiance_2[word + 1u] = packed.y;
+    } else {
+        gi_radiance[word] = packed.x;
+        gi_radiance[word + 1u] = packed.y;
+    }
 }
 #endif
 
@@ -266,12 +280,40 @@ vec4 gi_atlas_sample(vec3 p, uint cascade, float level, GiAxes axes) {
     return gi_decode(sum);
 }
 
-// The unfiltered voxels; faces shared only.
+// The base volume: the unfiltered voxels; faces shared only. Whole, it has a texel a voxel. In bricks
+// it has texels only where voxels are: a cell of GI_BRICK_CELL voxels along each side has a brick of
+// one texel more, which is the next cell's first one, so that any eight neighbours that are blended
+// lie in one brick. gi_bricks says which: xyz in bytes, its place in the image in bricks. Cells
+// with nothing in them all have the first, which stays empty (gi_bricks.comp).
+
+// Place of a cell's brick, in bricks; 0 = empty.
+ivec3 gi_brick(ivec3 cell) { return ivec3(texelFetch(gi_bricks, cell, 0).xyz * 255.0 + 0.5); }
+// Texel of a voxel.
+ivec3 gi_base_texel(ivec3 place) {
+    if (GI_BRICKS == 0u) return place;
+    return gi_brick(place / GI_BRICK_CELL) * GI_BRICK_SIDE + place % GI_BRICK_CELL;
+}
+// Axes (bits x 1, y 2, z 4) along which the voxel is also the last texel of the brick before.
+uint gi_brick_edges(ivec3 place) {
+    uvec3 edge = uvec3(equal(place % GI_BRICK_CELL, ivec3(0))) *
+                 uvec3(greaterThan(place, ivec3(0)));
+    return edge.x | edge.y << 1 | edge.z << 2;
+}
+// Undecoded, at q (0..1 of all cascades' box).
+vec4 gi_base_fetch(vec3 q) {
+    if (GI_BRICKS == 0u) return textureLod(gi_base, q, 0.0);
+    vec3 size = vec3(gi.dims.xy, gi.dims.z * GI_CASCADES);
+    vec3 p = clamp(q * size - 0.5, vec3(0.0), size - 1.0);
+    vec3 cell = floor(p * (1.0 / float(GI_BRICK_CELL)));
+    vec3 texel = texelFetch(gi_bricks, ivec3(cell), 0).xyz * (255.0 * float(GI_BRICK_SIDE)) +
+                 (p - cell * float(GI_BRICK_CELL) + 0.5);
+    return textureLod(gi_base, texel / vec3(textureSize(gi_base, 0)), 0.0);
+}
 vec4 gi_base_sample(vec3 p, uint cascade) {
     vec3 half_texel = 0.5 / vec3(gi.dims.xyz);
     vec3 q = clamp(p / vec3(gi.dims.xyz), half_texel, 1.0 - half_texel);
     if (GI_CASCADES > 1u) q.z = (q.z + float(cascade)) / float(GI_CASCADES);
-    return gi_decode(textureLod(gi_base, q, 0.0));
+    return gi_decode(gi_base_fetch(q));
 }
 
 // What arrives at somebody who travels along axes (gi_axes(direction)) from around p (in voxels of

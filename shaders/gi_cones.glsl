@@ -149,15 +149,14 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
         float growth = gi_cone_growth(width * factor), rise = log2(growth);
         float narrow_end = min(end, 1.001 / width), near_end = min(end, 1.999 / width);
         for (; t < narrow_end && cone.light.a < GI_OPAQUE;) {
-            gi_cone_add(cone, textureLod(gi_base, q + dq * t, 0.0), 1.0 / (1.0 + lambda * t));
+            gi_cone_add(cone, gi_base_fetch(q + dq * t), 1.0 / (1.0 + lambda * t));
             t = width * t > 0.999 ? t * growth : t + factor;
         }
         for (; t < near_end && cone.light.a < GI_OPAQUE; t *= growth) {
             vec3 at = q + dq * t;
             float share = log2(max(width * t, 1.0));
             if (GI_MIPS == GI_READ_NEAREST) share = floor(share + 0.5);
-            vec4 s = mix(textureLod(gi_base, at, 0.0), gi_cone_atlas(at, 0.0, 0.0, true, axes),
-                         share);
+            vec4 s = mix(gi_base_fetch(at), gi_cone_atlas(at, 0.0, 0.0, true, axes), share);
             gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
         }
         for (float lod = log2(width * t) - 1.0; t < end && cone.light.a < GI_OPAQUE; lod += rise) {

@@ -21,7 +21,8 @@ ivec3 place_of_bit(uint bit) {
 
 void forget(ivec3 place) {
     ivec3 parent = place >> 1;
-    if (GI_FACES == 0u) imageStore(base, place, vec4(0.0));
+    // Bricks were all cleared.
+    if (GI_FACES == 0u && GI_BRICKS == 0u) imageStore(base, place, vec4(0.0));
     for (int d = 0; d < int(GI_DIRECTIONS); d++) {
         if (GI_FACES != 0u)
             imageStore(source, place + ivec3(d * int(gi.dims.x), 0, 0), vec4(0.0));
@@ -97,8 +98,9 @@ ivec3 child(ivec3 corner, int i) { return corner + ivec3(i & 1, i >> 1 & 1, i >>
 void make_parent(uvec3 place) {
     ivec3 corner = ivec3(place & ~1u), parent = corner >> 1;
     vec4 c[8];
+    ivec3 first = gi_base_texel(corner); // all eight lie in one brick
     if (GI_FACES == 0u)
-        for (int i = 0; i < 8; i++) c[i] = imageLoad(base, child(corner, i));
+        for (int i = 0; i < 8; i++) c[i] = imageLoad(base, child(first, i));
     PARENT(0)
     if (GI_DIRECTIONS == 1u) return;
     PARENT(1)

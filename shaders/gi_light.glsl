@@ -205,6 +205,22 @@ void store_face(uint slot, uint f, vec3 sent) {
     gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity[f >> 1]));
 }
 
+void base_store(ivec3 place, vec4 texel) {
+    if (GI_BRICKS == 0u) {
+        imageStore(gi_base_storage, place, texel);
+        return;
+    }
+    // Into its own brick, and those that end with it: every subset of the axes.
+    uint edges = gi_brick_edges(place), subset = edges, more = 1u;
+    for (; more != 0u; subset = (subset - 1u) & edges) {
+        ivec3 before = ivec3(subset & 1u, subset >> 1 & 1u, subset >> 2);
+        ivec3 brick = gi_brick(place / GI_BRICK_CELL - before);
+        ivec3 at = brick * GI_BRICK_SIDE + place % GI_BRICK_CELL + before * GI_BRICK_CELL;
+        if (brick != ivec3(0)) imageStore(gi_base_storage, at, texel); // it found no room
+        more = subset;
+    }
+}
+
 void store(uint slot) {
     uvec3 place = gi_unpack_place(gi_voxels[slot]);
     vec3 albedo = voxel_albedo(slot) * (1.0 / PI);
@@ -220,7 +236,7 @@ void store(uint slot) {
         vec4 radiance = vec4(emission + albedo * whole, 1.0);
         gi_store_radiance(slot, 0u, radiance);
         if (GI_STEP != STEP_KEEP_BASE)
-            imageStore(gi_base_storage, ivec3(place), gi_encode(radiance));
+            base_store(ivec3(place), gi_encode(radiance));
     }
     if ((GI_VISIBILITY & GI_VISIBILITY_KEPT) != 0u)
         imageStore(gi_visibility_storage, ivec3(place), vec4(asked > 0.0 ? seen / asked : 1.0));
@@ -228,7 +244,7 @@ void store(uint slot) {
 
 void store_base(uint slot) {
     uvec3 place = gi_unpack_place(gi_voxels[slot]);
-    imageStore(gi_base_storage, ivec3(place), gi_encode(gi_load_radiance(slot, 0u)));
+    base_store(ivec3(place), gi_encode(gi_load_radiance(slot, 0u)));
 }
 
 void main() {

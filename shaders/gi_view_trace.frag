@@ -43,7 +43,7 @@ vec3 first_light(vec3 from, vec3 direction, bool is_on) {
     for (uint i = 0u; i < VIEW_STEPS && walk.t < end && met.a < 0.25; i++) {
         ivec3 place = ivec3(walk.place) + ivec3(0, 0, int(gi_flow.dims.z * walk.cascade));
         if (GI_FACES == 0u) {
-            met = texelFetch(gi_base, place, 0);
+            met = texelFetch(gi_base, gi_base_texel(place), 0);
         } else {
             ivec3 block = GI_DIRECTIONS == 1u ? ivec3(0) : ivec3(axes.block) * int(gi_flow.atlas.x);
             met = texelFetch(gi_atlas, place + ivec3(block.x, 0, 0), 0) * axes.weight.x +

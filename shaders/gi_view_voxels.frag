@@ -26,7 +26,7 @@ uint met_block(uint axis, vec3 direction) {
 vec3 voxel_radiance(ivec3 place, uint block) {
     vec4 texel;
     if (GI_FACES == 0u) {
-        texel = texelFetch(gi_base, place, 0);
+        texel = texelFetch(gi_base, gi_base_texel(place), 0);
     } else {
         int x = place.x + int(GI_DIRECTIONS == 1u ? 0u : block * gi.atlas.x);
         texel = texelFetch(gi_atlas, ivec3(x, place.yz), 0);

@@ -93,7 +93,8 @@ typedef struct MeshVertex {
 #define BINDING_GI_TRACE_1     13 // sampled: indirect specular (without the specular colour)
 #define BINDING_GI_TRACE_0_STORAGE 14 // the same, storage images rgba16f
 #define BINDING_GI_TRACE_1_STORAGE 15
-#define BINDING_GI_COUNT       16
+#define BINDING_GI_BRICKS      16 // sampled 3D: see BUILD_BRICKS
+#define BINDING_GI_COUNT       17
 // --- Set 0 of passes that make the voxels (they do not see the frame's set; set 1 as ever). ---
 #define BUILD_GI            0  // GiRecord, uniform
 #define BUILD_FRAME         1  // FrameRecord, uniform
@@ -110,23 +111,26 @@ typedef struct MeshVertex {
 #define BUILD_VOXELS        11 // uint[], storage: place of each occupied voxel (GI_VOXEL_*), by slot
 #define BUILD_ATTRIBUTES    12 // uint[], storage: GI_ATTRIBUTE_WORDS a slot
 #define BUILD_ACCUMULATORS  13 // uint[], storage: sums of what falls into a voxel
-#define BUILD_RADIANCE      14 // uint[], storage: what voxels send out, half floats, by slot and face
-#define BUILD_COUNTERS      15 // uint[], storage: GI_COUNTER_*, and arguments of dispatches
-#define BUILD_LIGHTS        16 // GiLightRecord[], storage: the packet's gi_lights
-#define BUILD_LISTS         17 // uint[], storage: lights of the cells of a grid over the volume
-#define BUILD_FIRST_IMAGE   18
-#define BUILD_SHADOW_MAP    18 // sampled, comparison
-#define BUILD_BASE          19 // sampled
-#define BUILD_ATLAS         20 // sampled
-#define BUILD_PROBES        21 // sampled
-#define BUILD_FIRST_STORAGE_IMAGE 22
-#define BUILD_BASE_STORAGE  22 // storage image, format of SPEC_GI_FORMAT
-#define BUILD_IRRADIANCE    23 // storage image rgba16f
-#define BUILD_VISIBILITY    24 // storage image r8
-#define BUILD_PROBES_STORAGE 25 // storage image rgba16f
-#define BUILD_MIP_SOURCE    26 // storage image: a level of the atlas
-#define BUILD_MIP_TARGET    27 // the next one
-#define BUILD_COUNT         28
+#define BUILD_RADIANCE      14 // uint[], storage: what voxels send out, half floats, by slot and face (0..2)
+#define BUILD_RADIANCE_2    15 // the other three faces: one buffer of 128 MB would not hold all six
+#define BUILD_COUNTERS      16 // uint[], storage: GI_COUNTER_*, and arguments of dispatches
+#define BUILD_LIGHTS        17 // GiLightRecord[], storage: the packet's gi_lights
+#define BUILD_LISTS         18 // uint[], storage: lights of the cells of a grid over the volume
+#define BUILD_FIRST_IMAGE   19
+#define BUILD_SHADOW_MAP    19 // sampled, comparison
+#define BUILD_BASE          20 // sampled
+#define BUILD_ATLAS         21 // sampled
+#define BUILD_PROBES        22 // sampled
+#define BUILD_BRICKS        23 // sampled 3D, a texel a cell of the base volume: its brick
+#define BUILD_FIRST_STORAGE_IMAGE 24
+#define BUILD_BASE_STORAGE  24 // storage image, format of SPEC_GI_FORMAT
+#define BUILD_IRRADIANCE    25 // storage image rgba16f
+#define BUILD_VISIBILITY    26 // storage image r8
+#define BUILD_PROBES_STORAGE 27 // storage image rgba16f
+#define BUILD_MIP_SOURCE    28 // storage image: a level of the atlas
+#define BUILD_MIP_TARGET    29 // the next one
+#define BUILD_BRICKS_STORAGE 30 // storage image rgba8 of BUILD_BRICKS
+#define BUILD_COUNT         31
 
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---
@@ -170,7 +174,8 @@ typedef struct MeshVertex {
 #define SPEC_GI_FORMAT     37 // 0 = rgba16f, 1 = rgba8 of radiance / GiRecord.scale.x
 #define SPEC_GI_RESOLUTION 38 // log2 of pixels a traced one covers along a side: 0, 1, 2
 #define SPEC_GI_TRACED     39 // bit 0: cones, bit 1: visibility volume; of lights with traced shadows
-#define SPEC_COUNT         40
+#define SPEC_GI_BRICKS     40 // 1 = the base volume has bricks where voxels are, 0 = it is whole
+#define SPEC_COUNT         41
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
 #define GBUFFER_LAYOUT_LEAN       0
@@ -278,9 +283,17 @@ typedef struct MeshVertex {
 #define GI_COUNTER_STATIC       0 // occupied static voxels (slots 0..)
 #define GI_COUNTER_DYNAMIC      1 // occupied dynamic ones (their slots follow the static ones)
 #define GI_COUNTER_LOST         2 // voxels that found no slot
+#define GI_COUNTER_BRICKS       3 // bricks that are wanted, with the empty one
 #define GI_COUNTER_ALL_ARGS     4 // 3 words: dispatch over all slots
 #define GI_COUNTER_DYNAMIC_ARGS 8 // 3 words: over the dynamic ones
 #define GI_COUNTER_COUNT        16
+
+// Bricks of the base volume (see gi.glsl): voxels along a side of a cell, texels along that of a brick,
+// and how many lie in the image along x and y.
+#define GI_BRICK_CELL  8
+#define GI_BRICK_SIDE  (GI_BRICK_CELL + 1)
+#define GI_BRICK_ROW   32
+#define GI_BRICK_LAYER (GI_BRICK_ROW * GI_BRICK_ROW)
 
 // Sums of what falls into a slot while voxels are made (BUILD_ACCUMULATORS), GI_SUM_WORDS a slot, for
 // GI_WINDOW_SLOTS slots at a time. All are zero between uses. A fragment adds whole numbers below

@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 #define PACKET_MAGIC   0x4B505A4Cu // "LZPK"
-#define PACKET_VERSION 4u
+#define PACKET_VERSION 5u
 
 typedef struct PacketSection {
     u32 offset, count;

@@ -105,6 +105,7 @@ typedef enum Msaa { MSAA_1, MSAA_4, MSAA_COUNT } Msaa;
 
 // --- Global illumination ---
 typedef enum GiFormat { GI_FORMAT_HALF, GI_FORMAT_BYTE } GiFormat;
+typedef enum GiBase { GI_BASE_AUTO, GI_BASE_WHOLE, GI_BASE_BRICKS, GI_BASE_COUNT } GiBase;
 typedef enum GiVoxeliser {
     GI_VOXELISER_AUTO,
     GI_VOXELISER_RASTER,
@@ -274,7 +275,10 @@ extern const char *const setting_group_titles[SETTING_GROUP_COUNT];
       "view gi_voxels: what of the voxels is shown")                                               \
     S(U32, show_level, GI, 0, 0, 9, "", "view gi_voxels: level of filtered radiance; 0 = none")    \
     S(ENUM, show_direction, GI, 0, 0, 5, GI_DIRECTION_WORDS,                                       \
-      "view gi_voxels: direction of filtered radiance")
+      "view gi_voxels: direction of filtered radiance")                                            \
+    S(ENUM, base, GI, GI_BASE_AUTO, 0, GI_BASE_COUNT - 1, "auto whole bricks",                     \
+      "faces shared: the finest radiance has a texel for every voxel, or bricks of them where "    \
+      "there are surfaces (less memory, dearer to read); auto = bricks from 512 voxels on")
 
 #define SETTING_FIELD_F32(name)  f32 name;
 #define SETTING_FIELD_BOOL(name) u32 name;

@@ -19,6 +19,11 @@
 #define GI_FEEDBACK_FRAMES 16
 // Buffers by slot that were too small grow to what was wanted and this share more.
 #define GI_SLOTS_SPARE(count) ((count) + (count) / 32)
+// What was guessed at first and is more than this too much is given back.
+#define GI_SLACK MIB(16)
+// Finest level of an atlas that may have what lies between levels too: 256 voxels in bytes, 128 in
+// halves. Memory counts for more beyond.
+#define GI_THIRDS_MOST MIB(64)
 
 // --- Life ---
 
@@ -32,10 +37,11 @@ bool gi_create(Renderer *renderer) {
     renderer->gi_build_layout = gpu_create_bind_layout(renderer->gpu, &build);
     GpuBindLayoutDesc screen = {.label = "gi screen", .count = BINDING_GI_COUNT};
     for (u32 i = 0; i < BINDING_GI_COUNT; i++)
-        screen.kinds[i] = i < BINDING_GI_FLOW              ? GPU_BINDING_UNIFORM_BUFFER
-                          : i < BINDING_GI_FIRST_IMAGE     ? GPU_BINDING_STORAGE_BUFFER
-                          : i < BINDING_GI_TRACE_0_STORAGE ? GPU_BINDING_SAMPLED_TEXTURE
-                                                           : GPU_BINDING_STORAGE_TEXTURE;
+        screen.kinds[i] = i < BINDING_GI_FLOW          ? GPU_BINDING_UNIFORM_BUFFER
+                          : i < BINDING_GI_FIRST_IMAGE ? GPU_BINDING_STORAGE_BUFFER
+                          : i < BINDING_GI_TRACE_0_STORAGE || i == BINDING_GI_BRICKS
+                              ? GPU_BINDING_SAMPLED_TEXTURE
+                              : GPU_BINDING_STORAGE_TEXTURE;
     renderer->gi_screen_layout = gpu_create_bind_layout(renderer->gpu, &screen);
     renderer->gi_sampler_linear =
         gpu_create_sampler(renderer->gpu, &(GpuSamplerDesc){.label = "gi linear"});
@@ -111,6 +117,10 @@ bool gi_wants_irradiance(const Packet *packet) {
 bool gi_makes_thirds(const Packet *packet) {
     const GiParams *params = &packet->gi.params;
     const GiRecord *record = &packet->gi.record;
+    // They double the atlas.
+    u64 texel = params->format == GI_FORMAT_BYTE ? 4 : 8;
+    if (6ull * record->atlas[0] * record->atlas[1] * record->atlas[2] * texel > GI_THIRDS_MOST)
+        return false;
     f32 tan_half = record->cone[0], step = 2.0f * tan_half * record->cone[1];
     return params->mips == GI_MIPS_LINEAR && params->faces == GI_FACES_SHARED &&
            params->filter == GI_FILTER_DIRECTIONAL && record->dims[3] == 1 &&
@@ -120,7 +130,7 @@ bool gi_makes_thirds(const Packet *packet) {
 
 // A texture that this packet does not use is as small as a 3D texture can be: its binding must hold
 // something.
-static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
+static void texture_shape(const Packet *packet, u32 brick_cap, RenderResource id, u32 out[4]) {
     const GiParams *params = &packet->gi.params;
     const GiRecord *record = &packet->gi.record;
     const u32 *dims = record->dims;
@@ -131,10 +141,17 @@ static void texture_shape(const Packet *packet, RenderResource id, u32 out[4]) {
                           record->atlas[3]};
     const u32 probes[4] = {record->probes[0] * 6, record->probes[1], MAX(record->probes[2], 2), 1};
     const u32 traced[4] = {(u32)record->trace[0], (u32)record->trace[1], 1, 1};
+    const u32 cells[4] = {dims[0] / GI_BRICK_CELL, dims[1] / GI_BRICK_CELL,
+                          dims[2] * dims[3] / GI_BRICK_CELL, 1};
+    u32 bricks[4];
+    gi_brick_shape(brick_cap, bricks);
     const u32 *shape = unused;
     switch (id) {
     case RESOURCE_GI_BASE:
-        if (params->faces == GI_FACES_SHARED) shape = volume;
+        if (params->faces == GI_FACES_SHARED) shape = gi_has_bricks(packet) ? bricks : volume;
+        break;
+    case RESOURCE_GI_BRICKS:
+        if (gi_has_bricks(packet)) shape = cells;
         break;
     case RESOURCE_GI_ATLAS:
         shape = atlas;
@@ -159,7 +176,7 @@ static bool texture_ensure(Renderer *renderer, const Packet *packet, RenderResou
                            bool *made) {
     GiState *gi = &renderer->gi;
     u32 shape[4], *size = gi->sizes[id - RESOURCE_FIRST_GI];
-    texture_shape(packet, id, shape);
+    texture_shape(packet, gi->brick_cap, id, shape);
     bool is_volume = id == RESOURCE_GI_BASE || id == RESOURCE_GI_ATLAS;
     GpuFormat format = !is_volume                                   ? resource_formats[id]
                        : packet->gi.params.format == GI_FORMAT_BYTE ? GPU_FORMAT_RGBA8
@@ -191,7 +208,7 @@ static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, bool 
     if (size > gpu_info(renderer->gpu)->max_storage_buffer_size) return false;
     // What shrank by much is made anew as well: 512^3 voxels leave hundreds of megabytes behind.
     u64 there = buffer->id ? gpu_buffer_size(renderer->gpu, *buffer) : 0;
-    if (there >= size && there / 4 <= size) return true;
+    if (there >= size && (there / 4 <= size && there - size < MIB(1))) return true;
     if (buffer->id) gpu_destroy_buffer(renderer->gpu, *buffer);
     *buffer =
         gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = resource_labels[id],
@@ -218,7 +235,9 @@ u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams
     case RESOURCE_GI_ACCUMULATORS:
         return gi_accumulator_bytes(voxels, slots, params->solid);
     case RESOURCE_GI_RADIANCE:
-        return (u64)slots * (params->faces == GI_FACES_APART ? 6 : 1) * 2 * word;
+        return (u64)slots * (params->faces == GI_FACES_APART ? 3 : 1) * 2 * word;
+    case RESOURCE_GI_RADIANCE_2:
+        return params->faces == GI_FACES_APART ? (u64)slots * 3 * 2 * word : 0;
     case RESOURCE_GI_COUNTERS:
         return (GI_COUNTER_BLOCKS + gi_rank_blocks(voxels)) * word;
     default:
@@ -251,7 +270,11 @@ static bool resize(Renderer *renderer, const Packet *packet) {
                 memcmp(gi->atlas, record->atlas, sizeof gi->atlas) == 0 &&
                 gi->faces == params->faces && gi->filter == params->filter &&
                 gi->solid == params->solid;
-    if (!same || gi->slot_cap == 0) gi->slot_cap = slots_at_first(record->dims);
+    if (!same || gi->slot_cap == 0) {
+        gi->slot_cap = slots_at_first(record->dims);
+        gi->brick_cap = gi_bricks_at_first(record->dims);
+        gi->is_guessed = true;
+    }
     gi->slot_cap = MIN(gi->slot_cap, slots_at_most(renderer, params));
     bool ok = true, made = !same;
     for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_FIRST_BUFFER && ok; id++)
@@ -267,6 +290,7 @@ static bool resize(Renderer *renderer, const Packet *packet) {
     gi->faces = params->faces;
     gi->filter = params->filter;
     gi->solid = params->solid;
+    gi->has_bricks = gi_has_bricks(packet);
     if (made || !ok) {
         gi->static_key = gi->dynamic_key = gi->light_key = gi->probe_key = 0;
         gi->has_dynamic = gi->has_lit = false;
@@ -304,6 +328,8 @@ static void decide(Renderer *renderer, const Packet *packet) {
     gi->voxelise_static = gi->static_key != wanted->static_key || warming_up;
     if (gi->voxelise_static) gi->dynamic_key = 0; // what is static now takes voxels from them
     gi->voxelise_dynamic = dynamic_is_due(gi, packet) || warming_up;
+    // Bricks are cleared and made anew: they keep nothing of the last frame.
+    if (gi_has_bricks(packet)) gi->is_cold |= gi->voxelise_static || gi->voxelise_dynamic;
     gi->relight = gi->voxelise_static || gi->voxelise_dynamic || !gi->has_lit ||
                   gi->light_key != wanted->light_key;
     // A round through the probes takes as many frames as they have turns.
@@ -409,6 +435,7 @@ static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
     b[BUILD_ATTRIBUTES] = device_buffer(r, RESOURCE_GI_ATTRIBUTES);
     b[BUILD_ACCUMULATORS] = device_buffer(r, RESOURCE_GI_ACCUMULATORS);
     b[BUILD_RADIANCE] = device_buffer(r, RESOURCE_GI_RADIANCE);
+    b[BUILD_RADIANCE_2] = device_buffer(r, RESOURCE_GI_RADIANCE_2);
     b[BUILD_COUNTERS] = device_buffer(r, RESOURCE_GI_COUNTERS);
     b[BUILD_LIGHTS] = b[BUILD_LIGHT_BLOCK] = frame_buffer(r, FRAME_BUFFER_GI_LIGHTS);
     b[BUILD_LISTS] = frame_buffer(r, FRAME_BUFFER_GI_LISTS);
@@ -421,6 +448,8 @@ static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
     b[BUILD_IRRADIANCE] = texture(r, RESOURCE_GI_IRRADIANCE, none);
     b[BUILD_VISIBILITY] = texture(r, RESOURCE_GI_VISIBILITY, none);
     b[BUILD_PROBES_STORAGE] = texture(r, RESOURCE_GI_PROBES, none);
+    b[BUILD_BRICKS] = texture(r, RESOURCE_GI_BRICKS, r->sampler_nearest);
+    b[BUILD_BRICKS_STORAGE] = texture(r, RESOURCE_GI_BRICKS, none);
     b[BUILD_MIP_SOURCE] = b[BUILD_MIP_TARGET] = texture(r, RESOURCE_GI_ATLAS, none);
     b[BUILD_MIP_SOURCE].mip = level > 0 ? level - 1 : 0;
     b[BUILD_MIP_TARGET].mip = level;
@@ -439,6 +468,7 @@ static void bind_screen(const Renderer *r, GpuBinding *b) {
     b[BINDING_GI_IRRADIANCE] = texture(r, RESOURCE_GI_IRRADIANCE, linear);
     b[BINDING_GI_VISIBILITY] = texture(r, RESOURCE_GI_VISIBILITY, linear);
     b[BINDING_GI_PROBES] = texture(r, RESOURCE_GI_PROBES, linear);
+    b[BINDING_GI_BRICKS] = texture(r, RESOURCE_GI_BRICKS, r->sampler_nearest);
     b[BINDING_GI_TRACE_0] = texture(r, RESOURCE_GI_TRACE_0, r->sampler_nearest);
     b[BINDING_GI_TRACE_1] = texture(r, RESOURCE_GI_TRACE_1, r->sampler_nearest);
     b[BINDING_GI_TRACE_0_STORAGE] = texture(r, RESOURCE_GI_TRACE_0, none);
@@ -515,6 +545,23 @@ static void report_record(const PassContext *c) {
 const Pass gi_report_pass = {
     "voxel report", {USE(GI_COUNTERS, COPY_SOURCE)}, 1, report_record, report_needed};
 
+// Did the base volume find room for all its bricks? If not, there is more for the next frame.
+static bool bricks_fit(Renderer *renderer, GiState *gi) {
+    u32 wanted = renderer->gi_reports.counters[GI_COUNTER_BRICKS];
+    if (!gi->has_bricks || wanted <= gi->brick_cap) return false;
+    u32 shape[4], most = GI_BRICK_LAYER * (GI_BRICK_DEPTH_MAX / GI_BRICK_SIDE);
+    gi_brick_shape(MIN(GI_SLOTS_SPARE(wanted), most), shape);
+    u32 room = shape[2] / GI_BRICK_SIDE * GI_BRICK_LAYER;
+    bool grows = room > gi->brick_cap;
+    static bool told;
+    if (wanted > most && !told)
+        LOG(RENDER_LIMIT, "%u bricks of voxels are wanted, there is room for %u: others are empty",
+            wanted, most);
+    told |= wanted > most;
+    gi->brick_cap = room;
+    return grows;
+}
+
 // Of one frame set: each has buffers of its own, which grow by what it reports itself.
 static bool read_report(Renderer *renderer, u32 slot, u32 set) {
     GiReports *reports = &renderer->gi_reports;
@@ -524,16 +571,29 @@ static bool read_report(Renderer *renderer, u32 slot, u32 set) {
     const u32 *all = gpu_buffer_map(renderer->gpu, reports->buffer);
     memcpy(reports->counters, all + (u64)(slot * 2 + set) * GI_COUNTER_COUNT,
            sizeof reports->counters);
+    bool is_other = bricks_fit(renderer, gi);
     u64 wanted = (u64)reports->counters[GI_COUNTER_STATIC] + reports->counters[GI_COUNTER_DYNAMIC];
-    if (reports->counters[GI_COUNTER_LOST] == 0 || wanted <= gi->slot_cap) return false;
-    u32 most = slots_at_most(renderer, &(GiParams){.faces = gi->faces});
+    bool is_guessed = gi->is_guessed;
+    gi->is_guessed = false;
+    GiParams params = {.faces = gi->faces};
+    u64 bytes = gi_buffer_bytes(RESOURCE_GI_VOXELS, 0, 1, &params) +
+                gi_buffer_bytes(RESOURCE_GI_ATTRIBUTES, 0, 1, &params) +
+                gi_buffer_bytes(RESOURCE_GI_RADIANCE, 0, 1, &params) +
+                gi_buffer_bytes(RESOURCE_GI_RADIANCE_2, 0, 1, &params);
+    u64 ample = MAX(GI_SLOTS_SPARE(wanted), GI_SLOTS_MIN);
+    if (is_guessed && gi->slot_cap > ample && (gi->slot_cap - ample) * bytes > GI_SLACK) {
+        gi->slot_cap = (u32)ample;
+        return true;
+    }
+    if (reports->counters[GI_COUNTER_LOST] == 0 || wanted <= gi->slot_cap) return is_other;
+    u32 most = slots_at_most(renderer, &params);
     static bool told;
     if (wanted > most && !told)
         LOG(RENDER_LIMIT,
             "%llu voxels are occupied, the device has room for %u: the others are dark",
             (unsigned long long)wanted, most);
     told |= wanted > most;
-    if (gi->slot_cap >= most) return false;
+    if (gi->slot_cap >= most) return is_other;
     gi->slot_cap = (u32)MIN(GI_SLOTS_SPARE(wanted), most);
     return true;
 }
@@ -553,6 +613,21 @@ u64 gi_memory(const Renderer *renderer) {
 
 // --- For tests and tools ---
 
+u32 renderer_gi_parts(const Renderer *renderer, RendererGiPart *out, u32 out_cap) {
+    u32 count = 0;
+    for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_COUNT && count < out_cap; id++) {
+        GpuTexture texture = renderer->targets[id];
+        GpuBuffer buffer = renderer->device_buffers[id];
+        bool is_texture = id < RESOURCE_FIRST_BUFFER;
+        if (!is_texture && id < RESOURCE_FIRST_GI_BUFFER) continue;
+        u64 bytes = 0;
+        if (is_texture && texture.id) bytes = gpu_texture_size(renderer->gpu, texture);
+        if (!is_texture && buffer.id) bytes = gpu_buffer_size(renderer->gpu, buffer);
+        out[count++] = (RendererGiPart){resource_labels[id], bytes};
+    }
+    return count;
+}
+
 u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size) {
     static const RenderResource ids[GI_VOLUME_COUNT] = {
         [GI_VOLUME_MASKS] = RESOURCE_GI_MASKS,
@@ -560,8 +635,10 @@ u64 renderer_read_gi(Renderer *renderer, GiVolume which, void *out, u64 size) {
         [GI_VOLUME_VOXELS] = RESOURCE_GI_VOXELS,
         [GI_VOLUME_ATTRIBUTES] = RESOURCE_GI_ATTRIBUTES,
         [GI_VOLUME_RADIANCE] = RESOURCE_GI_RADIANCE,
+        [GI_VOLUME_RADIANCE_2] = RESOURCE_GI_RADIANCE_2,
         [GI_VOLUME_COUNTERS] = RESOURCE_GI_COUNTERS,
         [GI_VOLUME_BASE] = RESOURCE_GI_BASE,
+        [GI_VOLUME_BRICKS] = RESOURCE_GI_BRICKS,
         [GI_VOLUME_ATLAS] = RESOURCE_GI_ATLAS,
         [GI_VOLUME_IRRADIANCE] = RESOURCE_GI_IRRADIANCE,
         [GI_VOLUME_VISIBILITY] = RESOURCE_GI_VISIBILITY,

@@ -102,9 +102,9 @@ static void filter_record(const PassContext *c) {
         USE(GI_BASE, STORAGE_COMPUTE), USE(GI_ATLAS, STORAGE_COMPUTE),                             \
             USE(GI_MASKS, STORAGE_COMPUTE), USE(GI_RANKS, STORAGE_READ_COMPUTE),                   \
             USE(GI_VOXELS, STORAGE_READ_COMPUTE), USE(GI_RADIANCE, STORAGE_READ_COMPUTE),          \
-            USE(GI_COUNTERS, INDIRECT)                                                             \
+            USE(GI_COUNTERS, INDIRECT), USE(GI_RADIANCE_2, STORAGE_READ_COMPUTE)                   \
     }
-const Pass gi_filter_pass = {"voxel filter", FILTER_USES, 7, filter_record, is_relit};
+const Pass gi_filter_pass = {"voxel filter", FILTER_USES, 8, filter_record, is_relit};
 
 static void refilter_record(const PassContext *c) {
     if (gi_feeds_back(c))
@@ -112,4 +112,4 @@ static void refilter_record(const PassContext *c) {
     else
         levels_record(c);
 }
-const Pass gi_refilter_pass = {"voxel filter 2", FILTER_USES, 7, refilter_record, gi_bounces};
+const Pass gi_refilter_pass = {"voxel filter 2", FILTER_USES, 8, refilter_record, gi_bounces};

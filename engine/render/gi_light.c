@@ -86,13 +86,14 @@ static void store_record(const PassContext *c) { by_slot(c, PIPELINE_GI_LIGHT, S
             USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE), USE(GI_RADIANCE, STORAGE_COMPUTE),           \
             USE(GI_COUNTERS, INDIRECT), USE(GI_BASE, STORAGE_COMPUTE),                             \
             USE(GI_VISIBILITY, STORAGE_COMPUTE), USE(GI_PROBES, SAMPLED_COMPUTE),                  \
-            USE(SHADOW_MAP, SAMPLED_COMPUTE)                                                       \
+            USE(SHADOW_MAP, SAMPLED_COMPUTE), USE(GI_BRICKS, SAMPLED_COMPUTE),                     \
+            USE(GI_RADIANCE_2, STORAGE_COMPUTE)                                                    \
     }
-const Pass gi_light_pass = {"voxel light", LIGHT_USES, 9, light_record, is_relit, NULL};
-static const Pass light_again_pass = {"voxel light again", LIGHT_USES, 9,
+const Pass gi_light_pass = {"voxel light", LIGHT_USES, 11, light_record, is_relit, NULL};
+static const Pass light_again_pass = {"voxel light again", LIGHT_USES, 11,
                                       light_again_record,  NULL,       NULL};
-static const Pass store_pass = {"voxel bounce store", LIGHT_USES, 9, store_record, has_base, NULL};
-static const Pass add_probes_pass = {"voxel light again", LIGHT_USES, 9,
+static const Pass store_pass = {"voxel bounce store", LIGHT_USES, 11, store_record, has_base, NULL};
+static const Pass add_probes_pass = {"voxel light again", LIGHT_USES, 11,
                                      add_probes_record,   NULL,       NULL};
 
 // --- Bounces ---
@@ -105,7 +106,12 @@ static void gather_record(const PassContext *c) {
         USE(GI_MASKS, STORAGE_READ_COMPUTE), USE(GI_COUNTERS, INDIRECT),                           \
         USE(GI_BASE, SAMPLED_COMPUTE), USE(GI_ATLAS, SAMPLED_COMPUTE)
 static const Pass gather_pass = {
-    "voxel bounce", {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE)}, 7, gather_record, NULL, NULL};
+    "voxel bounce",
+    {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE), USE(GI_RADIANCE_2, STORAGE_COMPUTE)},
+    8,
+    gather_record,
+    NULL,
+    NULL};
 
 static void bounce_expand(const PassContext *c) {
     const GiParams *params = &c->packet->gi.params;

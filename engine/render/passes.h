@@ -60,9 +60,10 @@ extern const Pass cluster_keys_pass, cluster_scan_pass, cluster_places_pass, clu
 #define USE_LISTS(use_)                                                                            \
     USE(LIST_CELLS, use_), USE(LIST_INDICES, use_), USE(PIXEL_CLUSTERS, use_),                     \
         USE(CLUSTERS, use_), USE(TILE_DEPTHS, use_)
-// gi_voxelise.c, gi_light.c, gi_filter.c, gi_probes.c: the voxels, from the shadow map on
-extern const Pass gi_fresh_pass, gi_static_pass, gi_dynamic_pass, gi_light_pass, gi_filter_pass,
-    gi_bounce_pass, gi_refilter_pass, gi_irradiance_pass, gi_probes_pass;
+// gi_voxelise.c, gi_bricks.c, gi_light.c, gi_filter.c, gi_probes.c: the voxels, from the shadow map
+// on
+extern const Pass gi_fresh_pass, gi_static_pass, gi_dynamic_pass, gi_bricks_pass, gi_light_pass,
+    gi_filter_pass, gi_bounce_pass, gi_refilter_pass, gi_irradiance_pass, gi_probes_pass;
 // Do probes keep what bounces on from frame to frame (else the filtered images do)?
 bool gi_bounces_by_probes(const GiParams *params);
 // Are there bounces to add in this frame after its light, and do they read what the last frame left
@@ -72,8 +73,9 @@ bool gi_feeds_back(const PassContext *c);
 // gi.c
 extern const Pass gi_report_pass;
 #define GI_VOXEL_PASSES                                                                            \
-    &gi_fresh_pass, &gi_static_pass, &gi_dynamic_pass, &gi_light_pass, &gi_filter_pass,            \
-        &gi_bounce_pass, &gi_refilter_pass, &gi_irradiance_pass, &gi_probes_pass, &gi_report_pass
+    &gi_fresh_pass, &gi_static_pass, &gi_dynamic_pass, &gi_bricks_pass, &gi_light_pass,            \
+        &gi_filter_pass, &gi_bounce_pass, &gi_refilter_pass, &gi_irradiance_pass, &gi_probes_pass, \
+        &gi_report_pass
 // gi_screen.c: from lit surfaces to such with indirect light. Forward paths have no G-buffer of
 // their own: gi_gbuffer_pass draws one.
 extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_compose_pass,

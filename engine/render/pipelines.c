@@ -49,13 +49,13 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 // What a pass needs that writes or reads filtered light.
 #define SPEC_GI_IMAGES                                                                             \
     (SPEC_BIT(SPEC_GI_DIRECTIONS) | SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
-     SPEC_BIT(SPEC_GI_MIPS) | SPEC_BIT(SPEC_GI_CASCADES))
+     SPEC_BIT(SPEC_GI_MIPS) | SPEC_BIT(SPEC_GI_CASCADES) | SPEC_BIT(SPEC_GI_BRICKS))
 // What a pass over the screen needs that gathers from the voxels.
 #define SPEC_READ_VOXELS                                                                           \
     (SPEC_READ_GBUFFER | SPEC_BIT(SPEC_BRDF_MASK) | SPEC_BIT(SPEC_GI_DIRECTIONS) |                 \
      SPEC_BIT(SPEC_GI_FACES) | SPEC_BIT(SPEC_GI_MIPS) | SPEC_BIT(SPEC_GI_CASCADES) |               \
      SPEC_BIT(SPEC_GI_DIFFUSE) | SPEC_BIT(SPEC_GI_FEATURES) | SPEC_BIT(SPEC_GI_FORMAT) |           \
-     SPEC_BIT(SPEC_GI_RESOLUTION))
+     SPEC_BIT(SPEC_GI_RESOLUTION) | SPEC_BIT(SPEC_GI_BRICKS))
 
 typedef struct PipelineRow {
     const char *label, *vertex, *fragment, *compute;
@@ -397,6 +397,9 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                           .compute = "gi_rank.comp",
                           .spec_mask = SPEC_BIT(SPEC_GI_STEP)},
     [PIPELINE_GI_LIST] = {.label = "voxel list", .compute = "gi_list.comp"},
+    [PIPELINE_GI_BRICKS] = {.label = "voxel bricks",
+                            .compute = "gi_bricks.comp",
+                            .spec_mask = SPEC_BIT(SPEC_GI_STEP)},
     [PIPELINE_GI_RESOLVE] = {.label = "voxel resolve", .compute = "gi_resolve.comp"},
     [PIPELINE_GI_CLEAR] = {.label = "voxel clear",
                            .compute = "gi_clear.comp",
@@ -612,6 +615,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_GI_FORMAT] = gi->format,
         [SPEC_GI_RESOLUTION] = gi->resolution,
         [SPEC_GI_TRACED] = renderer->gi.traced_shadows,
+        [SPEC_GI_BRICKS] = gi_has_bricks(packet),
     };
     if (kind == PIPELINE_FORWARD_BLEND || kind == PIPELINE_GI_FORWARD_BLEND) {
         // Blended surfaces lie before those that the device made its lists for.

@@ -112,11 +112,19 @@ typedef struct RendererStats {
     u32 list_indices, list_fallbacks, list_longest, clusters;
     // GI: how often each was done since the renderer was made; bytes on the device.
     u32 gi_static_voxelised, gi_dynamic_voxelised, gi_relit, gi_probes_traced;
-    u32 gi_probes_refreshed; // probes traced by this frame
+    u32 gi_probes_refreshed;                          // probes traced by this frame
     u32 gi_voxels, gi_dynamic_voxels, gi_lost_voxels; // of the newest finished frame that counted
     u64 gi_bytes;
 } RendererStats;
 RendererStats renderer_stats(const Renderer *renderer);
+
+// What the voxels keep on the device, by resource, in bytes as asked for: about
+// RendererStats.gi_bytes.
+typedef struct RendererGiPart {
+    const char *name;
+    u64 bytes;
+} RendererGiPart;
+u32 renderer_gi_parts(const Renderer *renderer, RendererGiPart *out, u32 out_cap);
 
 // For tests: lists made on the device get at most this many entries (0 = what the device allows),
 // and the buffers are made anew; cells that find no room use all lights.
@@ -129,13 +137,16 @@ typedef enum GiVolume {
     GI_VOLUME_VOXELS,
     GI_VOLUME_ATTRIBUTES,
     GI_VOLUME_RADIANCE,
+    GI_VOLUME_RADIANCE_2, // faces apart: 3..5, the others lie in the one before
     GI_VOLUME_COUNTERS,
-    GI_VOLUME_BASE,
+    GI_VOLUME_BASE,   // in bricks (settings gi.base), if it is
+    GI_VOLUME_BRICKS, // the brick of each cell
     GI_VOLUME_ATLAS,
     GI_VOLUME_IRRADIANCE,
     GI_VOLUME_VISIBILITY,
     GI_VOLUME_PROBES,
-    GI_VOLUME_DIFFUSE, // of traced pixels: indirect diffuse light without albedo, w ambient visibility
+    GI_VOLUME_DIFFUSE, // of traced pixels: indirect diffuse light without albedo, w ambient
+                       // visibility
     GI_VOLUME_COUNT
 } GiVolume;
 // Returns the bytes copied, at most `size`; 0 = not there.

@@ -31,6 +31,7 @@
     X(GI_IRRADIANCE, "gi irradiance", GPU_FORMAT_RGBA16F)                                          \
     X(GI_VISIBILITY, "gi visibility", GPU_FORMAT_R8)                                               \
     X(GI_PROBES, "gi probes", GPU_FORMAT_RGBA16F)                                                  \
+    X(GI_BRICKS, "gi bricks", GPU_FORMAT_RGBA8)                                                    \
     X(GI_TRACE_0, "gi trace 0", GPU_FORMAT_RGBA16F)                                                \
     X(GI_TRACE_1, "gi trace 1", GPU_FORMAT_RGBA16F)                                                \
     X(LIST_CELLS, "list cells", GPU_FORMAT_NONE)                                                   \
@@ -45,6 +46,7 @@
     X(GI_ATTRIBUTES, "gi attributes", GPU_FORMAT_NONE)                                             \
     X(GI_ACCUMULATORS, "gi accumulators", GPU_FORMAT_NONE)                                         \
     X(GI_RADIANCE, "gi radiance", GPU_FORMAT_NONE)                                                 \
+    X(GI_RADIANCE_2, "gi radiance 2", GPU_FORMAT_NONE)                                             \
     X(GI_COUNTERS, "gi counters", GPU_FORMAT_NONE)
 typedef enum RenderResource {
 #define X(id, ...) RESOURCE_##id,
@@ -150,6 +152,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_SOLID,
     PIPELINE_GI_RANK,    // step: of the scan that counts set bits
     PIPELINE_GI_LIST,    // places of the voxels by slot
+    PIPELINE_GI_BRICKS,  // step: cells that need a brick of the base volume; bricks for them
     PIPELINE_GI_RESOLVE, // sums to attributes
     PIPELINE_GI_CLEAR,   // what dynamic voxels leave behind
     PIPELINE_GI_LIGHT,
@@ -274,7 +277,9 @@ typedef struct GiState {
     // Shape of the volumes that are there.
     u32 dims[4], format, faces, filter, solid, atlas[4]; // dims, atlas: as in GiRecord
     u32 slot_cap;                                        // slots that the buffers by slot hold
-    u32 sizes[GI_TEXTURES][4]; // width, height, depth, mips of each texture
+    u32 brick_cap;                                       // bricks that the base volume holds
+    bool is_guessed, has_bricks; // slot_cap: nothing was counted yet; the base volume is in bricks
+    u32 sizes[GI_TEXTURES][4];   // width, height, depth, mips of each texture
     // What they hold: keys of the packet that they were made from, 0 = nothing.
     u64 static_key, dynamic_key, light_key, probe_key;
     u32 dynamic_tick; // of the packet whose dynamic instances were voxelised last
@@ -452,11 +457,16 @@ void gi_state_destroy(Renderer *renderer); // of the frame set in use
 // Before the frame's bind group is made. Out of memory (LOG): the packet is drawn without GI.
 void gi_begin(Renderer *renderer, const Packet *packet);
 bool gi_update_groups(Renderer *renderer); // after it
-// Counters of the frame that had this slot, which is done; true if the buffers by slot were too
-// small: they are larger in the next frame, which makes everything anew.
+// Counters of the frame that had this slot, which is done; true if the buffers by slot or the
+// bricks were too few, or far too many: they fit in the next frame, which makes everything anew.
 bool gi_read_reports(Renderer *renderer, u32 slot);
 // Bytes of a buffer for so many voxels of all cascades and slots.
 u64 gi_buffer_bytes(RenderResource buffer, u64 voxels, u32 slots, const GiParams *params);
+// gi_bricks.c: is the base volume in bricks? How many are likely to do, and the image for so many.
+#define GI_BRICK_DEPTH_MAX 2048 // texels that any device has room for along z of such an image
+bool gi_has_bricks(const Packet *packet);
+u32 gi_bricks_at_first(const u32 dims[4]);
+void gi_brick_shape(u32 bricks, u32 out[4]); // width, height, depth, mips
 // gi_voxelise.c: of the sums for a window of slots; groups that count the bits of a layer of the
 // masks; bits of each number that a triangle adds to a sum of 32, if there are so many triangles.
 u64 gi_accumulator_bytes(u64 voxels, u32 slots, bool solid);

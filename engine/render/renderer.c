@@ -190,11 +190,18 @@ u64 resource_read(Renderer *renderer, RenderResource id, void *out, u64 size) {
                               .from = renderer->usage[id],
                               .to = GPU_USAGE_COPY_SOURCE};
         gpu_cmd_barriers(cmd, &barrier, 1);
-        renderer->usage[id] = GPU_USAGE_COPY_SOURCE;
         if (is_buffer)
             gpu_cmd_copy_buffer(cmd, buffer, 0, to, 0, whole);
         else
             gpu_cmd_copy_mips_to_buffer(cmd, texture, to);
+        // As before: not every pass that reads it says so again.
+        if (barrier.from != GPU_USAGE_NONE) {
+            barrier.from = GPU_USAGE_COPY_SOURCE;
+            barrier.to = renderer->usage[id];
+            gpu_cmd_barriers(cmd, &barrier, 1);
+        } else {
+            renderer->usage[id] = GPU_USAGE_COPY_SOURCE;
+        }
         ok = gpu_frame_end(gpu, true);
     }
     size = MIN(size, whole);

@@ -209,7 +209,7 @@ static Result twin(const Volumes *v, const Cone *cone) {
 
 static void trace(const Volumes *v, const Cone *cones, u32 step, Result *out) {
     Gpu *gpu = gpu_fixture_create("cones");
-    GpuBindLayoutDesc desc = {.label = "cones", .count = BUILD_ATLAS + 1};
+    GpuBindLayoutDesc desc = {.label = "cones", .count = BUILD_BRICKS + 1};
     for (u32 i = 0; i < desc.count; i++)
         desc.kinds[i] = i < BUILD_FIRST_STORAGE ? GPU_BINDING_UNIFORM_BUFFER
                         : i < BUILD_FIRST_IMAGE ? GPU_BINDING_STORAGE_BUFFER

@@ -13,7 +13,7 @@ typedef struct Filter {
     GiTwin twin; // shape, and the levels as they should be
     GiRecord gi;
     bool thirds; // with what is between levels: gi_filter_thirds.glsl
-    u32 voxels, slots, *masks, *places, *radiance;
+    u32 voxels, slots, *masks, *places, *radiance[2];
     u32 counters[GI_COUNTER_COUNT];
     f32 *light;       // as gi_twin_filter reads it
     u8 *base, *atlas; // what images hold: before the run, then after it
@@ -45,11 +45,11 @@ static void filter_open(Filter *f, u32 x, u32 y, u32 z, u32 cascades, bool apart
     f->light = calloc((u64)f->voxels * (apart ? 24 : 4), sizeof(f32));
     f->masks = calloc(f->voxels / 32 * GI_MASK_COUNT, sizeof(u32));
     f->places = calloc(f->voxels, sizeof(u32));
-    f->radiance = calloc((u64)f->voxels * 12, sizeof(u32));
+    for (u32 i = 0; i < 2; i++) f->radiance[i] = calloc((u64)f->voxels * 6, sizeof(u32));
 }
 static void filter_close(Filter *f) {
     gi_twin_free(&f->twin);
-    free(f->light), free(f->masks), free(f->places), free(f->radiance);
+    free(f->light), free(f->masks), free(f->places), free(f->radiance[0]), free(f->radiance[1]);
     free(f->base), free(f->atlas);
 }
 
@@ -76,7 +76,8 @@ static void filter_fill(Filter *f) {
             f->places[f->slots] =
                 x << GI_VOXEL_X_SHIFT | y << GI_VOXEL_Y_SHIFT | z << GI_VOXEL_Z_SHIFT;
             for (u32 i = 0; i < 4 * faces; i++) {
-                u32 *word = &f->radiance[(f->slots * faces + i / 4) * 2 + i % 4 / 2];
+                u32 face = i / 4, at = f->twin.apart ? f->slots * 3 + face % 3 : f->slots;
+                u32 *word = &f->radiance[face / 3][at * 2 + i % 4 / 2];
                 *word = i % 2 == 0 ? half_bits(light[i]) : *word | (u32)half_bits(light[i]) << 16;
             }
             f->slots++;
@@ -90,8 +91,8 @@ static void filter_fill(Filter *f) {
 
 typedef struct Device {
     Gpu *gpu;
-    GpuBuffer record, masks, places, radiance, counters, masks_back, base_back, atlas_back;
-    GpuTexture base, atlas;
+    GpuBuffer record, masks, places, radiance[2], counters, masks_back, base_back, atlas_back;
+    GpuTexture base, atlas, bricks; // bricks: bound, not read
     GpuBindLayout layout;
     GpuBindGroup groups[GI_TWIN_LEVELS_CAP];
     GpuPipeline base_steps[3], mip, thirds[2];
@@ -145,9 +146,11 @@ static void device_bind(Device *d, const Filter *f, GpuSampler sampler) {
                                    : (GpuBinding){.texture = d->base};
         desc.bindings[BUILD_MASKS].buffer = d->masks;
         desc.bindings[BUILD_VOXELS].buffer = d->places;
-        desc.bindings[BUILD_RADIANCE].buffer = d->radiance;
+        desc.bindings[BUILD_RADIANCE].buffer = d->radiance[0];
+        desc.bindings[BUILD_RADIANCE_2].buffer = d->radiance[1];
         desc.bindings[BUILD_COUNTERS].buffer = d->counters;
         desc.bindings[BUILD_ATLAS].texture = d->atlas;
+        desc.bindings[BUILD_BRICKS].texture = d->bricks;
         desc.bindings[BUILD_MIP_SOURCE] =
             (GpuBinding){.texture = d->atlas, .mip = level ? level - 1 : 0};
         desc.bindings[BUILD_MIP_TARGET] = (GpuBinding){.texture = d->atlas, .mip = level};
@@ -196,7 +199,8 @@ static void filter_run(Filter *f) {
     d.record = buffer_of(d.gpu, "gi", &f->gi, sizeof f->gi);
     d.masks = buffer_of(d.gpu, "masks", f->masks, f->voxels / 8ull * GI_MASK_COUNT);
     d.places = buffer_of(d.gpu, "places", f->places, f->voxels * 4ull);
-    d.radiance = buffer_of(d.gpu, "radiance", f->radiance, f->voxels * 48ull);
+    for (u32 i = 0; i < 2; i++)
+        d.radiance[i] = buffer_of(d.gpu, "radiance", f->radiance[i], f->voxels * 24ull);
     d.counters = buffer_of(d.gpu, "counters", f->counters, sizeof f->counters);
     bool has_base = !twin->apart;
     d.base =
@@ -205,6 +209,10 @@ static void filter_run(Filter *f) {
     d.atlas = volume_of(d.gpu, "atlas", format, gi_twin_width(twin, 0), twin->block[1],
                         twin->block[2] * twin->cascades * (f->thirds ? 2 : 1), twin->levels,
                         &f->atlas, &f->atlas_bytes);
+    u8 *nothing = NULL;
+    u64 nothing_bytes;
+    d.bricks = volume_of(d.gpu, "bricks", GPU_FORMAT_RGBA8, 2, 2, 2, 1, &nothing, &nothing_bytes);
+    free(nothing);
     GpuSampler sampler = gpu_create_sampler(d.gpu, &(GpuSamplerDesc){.label = "filter"});
     device_bind(&d, f, sampler);
     device_pipelines(&d, twin, f->thirds);
@@ -262,8 +270,10 @@ static void filter_run(Filter *f) {
     gpu_destroy_sampler(d.gpu, sampler);
     gpu_destroy_texture(d.gpu, d.base);
     gpu_destroy_texture(d.gpu, d.atlas);
-    const GpuBuffer buffers[] = {d.record,   d.masks,      d.places,    d.radiance,
-                                 d.counters, d.masks_back, d.base_back, d.atlas_back};
+    gpu_destroy_texture(d.gpu, d.bricks);
+    const GpuBuffer buffers[] = {d.record,      d.masks,       d.places,
+                                 d.radiance[0], d.radiance[1], d.counters,
+                                 d.masks_back,  d.base_back,   d.atlas_back};
     for (u32 i = 0; i < COUNT_OF(buffers); i++) gpu_destroy_buffer(d.gpu, buffers[i]);
     gpu_fixture_destroy(d.gpu);
 }

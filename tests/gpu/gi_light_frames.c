@@ -47,9 +47,12 @@ static Lit read_lit(Studio *studio, u32 faces) {
     assert_true(lit.slots > 0);
     lit.places = read_volume(studio, GI_VOLUME_VOXELS, lit.slots * sizeof(u32));
     u64 numbers = (u64)lit.slots * faces * 4;
-    const u16 *halves = read_volume(studio, GI_VOLUME_RADIANCE, numbers * sizeof(u16));
+    u64 bytes = numbers * sizeof(u16);
+    const u16 *halves[2] = {read_volume(studio, GI_VOLUME_RADIANCE, faces > 1 ? bytes / 2 : bytes),
+                            faces > 1 ? read_volume(studio, GI_VOLUME_RADIANCE_2, bytes / 2)
+                                      : NULL};
     lit.radiance = ARENA_PUSH(&studio->images, f32, numbers);
-    for (u64 i = 0; i < numbers; i++) lit.radiance[i] = half_to_float(halves[i]);
+    gi_radiance_floats(halves, lit.slots, faces, lit.radiance);
     return lit;
 }
 static f64 total(const Lit *lit) {

@@ -151,7 +151,7 @@ typedef struct Bench {
     GpuBindGroup group;
     GpuPipeline pipeline;
     GpuSampler linear, compare;
-    GpuBuffer buffers[16], dummy, radiance, base_bytes, visibility_bytes;
+    GpuBuffer buffers[16], dummy, radiance[2], base_bytes, visibility_bytes;
     u32 buffer_count;
     GpuTexture base, visibility, map, stand_in;
 } Bench;
@@ -223,7 +223,8 @@ static void bench_group(Bench *b, const VoxelScene *stage) {
     bind[BUILD_LIGHTS].buffer = bind[BUILD_LIGHT_BLOCK].buffer =
         keep(b, "lights", stage->lights, stage->light_cap * sizeof(GiLightRecord), false);
     bind[BUILD_LISTS].buffer = keep(b, "lists", stage->lists, stage->list_words * 4, false);
-    bind[BUILD_RADIANCE].buffer = b->radiance;
+    bind[BUILD_RADIANCE].buffer = b->radiance[0];
+    bind[BUILD_RADIANCE_2].buffer = b->radiance[1];
     bind[BUILD_SHADOW_MAP] = (GpuBinding){.texture = b->map, .sampler = b->compare};
     bind[BUILD_BASE] = (GpuBinding){.texture = b->base, .sampler = b->linear};
     bind[BUILD_BASE_STORAGE] = (GpuBinding){.texture = b->base};
@@ -279,8 +280,9 @@ static void bench_read(Bench *b, const VoxelScene *stage, LightResult *result) {
     u32 faces = stage->spec[SPEC_GI_FACES] ? 6 : 1;
     u64 voxels = dims[0] * dims[1] * dims[2] * dims[3], numbers = (u64)stage->slot_count * faces;
     result->radiance = malloc(numbers * 4 * sizeof(f32));
-    const u16 *halves = gpu_buffer_map(b->gpu, b->radiance);
-    for (u64 i = 0; i < numbers * 4; i++) result->radiance[i] = half_to_float(halves[i]);
+    const u16 *halves[2] = {gpu_buffer_map(b->gpu, b->radiance[0]),
+                            gpu_buffer_map(b->gpu, b->radiance[1])};
+    gi_radiance_floats(halves, stage->slot_count, faces, result->radiance);
     result->base_bytes = voxels * (stage->spec[SPEC_GI_FORMAT] ? 4 : 8);
     result->base = malloc(result->base_bytes);
     memcpy(result->base, gpu_buffer_map(b->gpu, b->base_bytes), result->base_bytes);
@@ -300,7 +302,8 @@ LightResult voxel_scene_run(VoxelScene *stage) {
                           : i < BUILD_FIRST_STORAGE_IMAGE ? GPU_BINDING_SAMPLED_TEXTURE
                                                           : GPU_BINDING_STORAGE_TEXTURE;
     b.layout = gpu_create_bind_layout(b.gpu, &layout);
-    b.radiance = gpu_fixture_readback(b.gpu, (u64)stage->slot_count * 6 * 8);
+    for (u32 i = 0; i < 2; i++)
+        b.radiance[i] = gpu_fixture_readback(b.gpu, (u64)stage->slot_count * 3 * 8);
     b.base_bytes = gpu_fixture_readback(b.gpu, voxels * 8);
     b.visibility_bytes = gpu_fixture_readback(b.gpu, voxels);
     bench_textures(&b, stage);
@@ -313,7 +316,7 @@ LightResult voxel_scene_run(VoxelScene *stage) {
     gpu_destroy_bind_group(b.gpu, b.group);
     gpu_destroy_pipeline(b.gpu, b.pipeline);
     for (u32 i = 0; i < b.buffer_count; i++) gpu_destroy_buffer(b.gpu, b.buffers[i]);
-    gpu_destroy_buffer(b.gpu, b.radiance);
+    for (u32 i = 0; i < 2; i++) gpu_destroy_buffer(b.gpu, b.radiance[i]);
     gpu_destroy_buffer(b.gpu, b.base_bytes);
     gpu_destroy_buffer(b.gpu, b.visibility_bytes);
     gpu_destroy_texture(b.gpu, b.base);
@@ -337,4 +340,12 @@ f32 half_to_float(u16 half) {
     f32 value =
         exponent ? ldexpf((f32)(1024 + mantissa), (int)exponent - 25) : ldexpf((f32)mantissa, -24);
     return half >> 15 ? -value : value;
+}
+
+void gi_radiance_floats(const u16 *const halves[2], u32 slots, u32 faces, f32 *out) {
+    u32 each = MIN(faces, 3); // of a slot in one buffer
+    for (u32 slot = 0; slot < slots; slot++)
+        for (u32 f = 0; f < faces; f++)
+            for (u32 k = 0; k < 4; k++)
+                *out++ = half_to_float(halves[f / 3][((u64)slot * each + f % 3) * 4 + k]);
 }

@@ -48,4 +48,7 @@ typedef struct LightSum {
 } LightSum;
 LightSum light_twin(const VoxelScene *stage, u32 slot);
 f32 half_to_float(u16 half);
+// From GI_RADIANCE and GI_RADIANCE_2 (faces 3..5 of six): out has 4 numbers a slot and face, in
+// order.
+void gi_radiance_floats(const u16 *const halves[2], u32 slots, u32 faces, f32 *out);
 #endif

@@ -119,6 +119,7 @@ static const struct {
     {"GiAttributeBuffer", 2, BINDING_GI_ATTRIBUTES},
     {"GiAccumulatorBuffer", 0, BUILD_ACCUMULATORS},
     {"GiRadianceBuffer", 0, BUILD_RADIANCE},
+    {"GiRadiance2Buffer", 0, BUILD_RADIANCE_2},
     {"GiCounterBuffer", 0, BUILD_COUNTERS},
     {"GiLightBuffer", 0, BUILD_LIGHTS},
     {"GiListBuffer", 0, BUILD_LISTS},
@@ -130,6 +131,8 @@ static const struct {
     {"gi_atlas_nearest_mip", 2, BINDING_GI_ATLAS_NEAREST_MIP},
     {"gi_probes", 0, BUILD_PROBES},
     {"gi_probes", 2, BINDING_GI_PROBES},
+    {"gi_bricks", 0, BUILD_BRICKS},
+    {"gi_bricks", 2, BINDING_GI_BRICKS},
 };
 
 // --- What SPIR-V says ---
