@@ -44,6 +44,6 @@ void main() {
         ivec2 pixel = first + ivec2(i & (SIDE - 1), i >> GI_RESOLUTION);
         GbufferPixel g = gbuffer_read(pixel);
         Surface s = gbuffer_surface(g);
-        put(pixel, composed(g, s, gi_trace_pixel(g, s, uvec2(pixel), true)), true);
+        put(pixel, composed(g, s, gi_trace_pixel(g, s, uvec2(pixel), vec3(0.0), true)), true);
     }
 }

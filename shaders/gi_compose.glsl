@@ -8,6 +8,7 @@
 #ifndef GI_COMPOSE_GLSL
 #define GI_COMPOSE_GLSL
 #include "gi_screen.glsl"
+#include "gi_place.glsl"
 
 layout(set = 2, binding = BINDING_GI_TRACE_0) uniform sampler2D trace_0;
 layout(set = 2, binding = BINDING_GI_TRACE_1) uniform sampler2D trace_1;
@@ -37,16 +38,6 @@ GiPixel traced_light(ivec2 traced) {
 
 // --- Upsampling ---
 
-// The surface that a pixel shows, as much as it takes to compare two. A pixel's place is seen from
-// the eye; the sky has no normal.
-struct Place {
-    vec3 at, normal;
-};
-Place place_of(ivec2 pixel, GbufferPixel g) {
-    vec3 at = pixel_ray(pixel) * (frame.camera.w / max(g.depth, 1e-9));
-    return Place(at, g.depth > 0.0 ? g.normal : vec3(0.0));
-}
-
 struct Tap {
     GiPixel light;
     Place place;
@@ -64,10 +55,7 @@ struct Blend {
 };
 // height: of the pixel's plane over the eye; near: how near the tap is on the screen.
 void blend_tap(inout Blend sum, Tap tap, vec3 normal, float height, float tolerance, float near) {
-    float distance = abs(dot(normal, tap.place.at) - height);
-    float fits = clamp(2.0 - distance * tolerance, 0.0, 1.0) *
-                 clamp(dot(normal, tap.place.normal) * 4.0 - 3.0, 0.0, 1.0);
-    float w = near * fits;
+    float fits = place_fits(tap.place, normal, height, tolerance), w = near * fits;
     sum.diffuse += tap.light.diffuse * w;
     if (gi_has_specular())
         sum.specular += vec4(tap.light.specular.rgb, 1.0) * (w * tap.light.specular.a);
@@ -81,10 +69,7 @@ ivec2 first_tap(ivec2 pixel) { return (pixel + SIDE - (SIDE >> 1)) / SIDE - 1; }
 // alone: nothing fits.
 GiPixel upsample(ivec2 pixel, GbufferPixel g, Tap t00, Tap t10, Tap t01, Tap t11, out bool alone) {
     Place place = place_of(pixel, g);
-    // A plane's distance counts in voxels, or pixels where these are larger.
-    float footprint = frame.camera.w / max(g.depth, 1e-9) * length(frame.ray_right.xyz) *
-                      frame.viewport.z * 2.0;
-    float tolerance = 1.0 / max(0.25 * gi.origin[0].w, 2.0 * footprint);
+    float tolerance = place_tolerance(g);
     float height = dot(place.normal, place.at);
     vec2 within = vec2((pixel + SIDE - (SIDE >> 1)) & (SIDE - 1)) * (1.0 / float(SIDE));
     vec2 high = within + 0.02, low = 1.02 - within;

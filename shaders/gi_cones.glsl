@@ -249,8 +249,8 @@ struct GiHemisphere {
     float visibility; // 1 - mean occlusion
     float steps;
 };
-// count: cones, 6, or 0 for none; sky: rgb radiance of zenith and horizon, or 0.
-GiHemisphere gi_hemisphere(vec3 start, vec3 normal, float first, float reach, uint count,
+// lean: added to the directions, where cones are dithered; count: cones, 6, or 0 for none; sky: rgb radiance of zenith and horizon, or 0.
+GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec3 lean, float first, float reach, uint count,
                            vec3 zenith, vec3 horizon) {
     GiHemisphere sum = GiHemisphere(vec3(0.0), 1.0, 0.0);
     vec3 u = cross(normal, GI_TANGENT_POLE);
@@ -263,6 +263,8 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, float first, float reach, ui
         bool is_first = i == 0u;
         vec3 around = u * turn.x + v * turn.y;
         vec3 direction = is_first ? normal : normal * 0.5 + around * 0.866025404;
+        if (GI_FACES != 0u && (GI_FEATURES & GI_FEATURE_DITHER) != 0u)
+            direction = normalize(direction + lean);
         float share = is_first ? 0.25 : 0.15;
         // The first of the five starts at turn 0: no turn after the one along the normal.
         const vec2 step = vec2(0.309016994, 0.951056516);

@@ -6,14 +6,20 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 2, binding = BINDING_GI_TRACE_0_STORAGE, rgba16f) writeonly uniform image2D trace_0;
+layout(set = 2, binding = BINDING_GI_TRACE_RAW_STORAGE, rgba16f) writeonly uniform image2D
+    trace_raw; // in place of the first, if gi_smooth.comp comes between
 layout(set = 2, binding = BINDING_GI_TRACE_1_STORAGE, rgba16f) writeonly uniform image2D trace_1;
 
 void main() {
     ivec2 traced = ivec2(gl_GlobalInvocationID.xy), size = ivec2(gi.trace.xy);
     GbufferPixel g = gbuffer_read(gi_traced_pixel(min(traced, size - 1)));
-    GiPixel result = gi_trace_pixel(g, gbuffer_surface(g), uvec2(traced), g.depth > 0.0);
+    GiPixel result = gi_trace_pixel(g, gbuffer_surface(g), uvec2(traced), gi_lean(uvec2(traced)),
+                                    g.depth > 0.0);
     if (traced.x < size.x && traced.y < size.y) {
-        imageStore(trace_0, traced, result.diffuse);
+        if ((GI_FEATURES & GI_FEATURE_DITHER) != 0u)
+            imageStore(trace_raw, traced, result.diffuse);
+        else
+            imageStore(trace_0, traced, result.diffuse);
         imageStore(trace_1, traced, result.specular);
     }
 }

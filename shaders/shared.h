@@ -89,12 +89,14 @@ typedef struct MeshVertex {
 #define BINDING_GI_IRRADIANCE  9  // sampled 3D: of voxels, see gi.glsl
 #define BINDING_GI_VISIBILITY  10 // sampled 3D: mean visibility of the lights
 #define BINDING_GI_PROBES      11 // sampled 3D: six directions side by side along x
-#define BINDING_GI_TRACE_0     12 // sampled: indirect diffuse (without albedo), w ambient visibility
-#define BINDING_GI_TRACE_1     13 // sampled: indirect specular (without the specular colour)
-#define BINDING_GI_TRACE_0_STORAGE 14 // the same, storage images rgba16f
-#define BINDING_GI_TRACE_1_STORAGE 15
-#define BINDING_GI_BRICKS      16 // sampled 3D: see BUILD_BRICKS
-#define BINDING_GI_COUNT       17
+#define BINDING_GI_BRICKS      12 // sampled 3D: see BUILD_BRICKS
+#define BINDING_GI_TRACE_0     13 // sampled: indirect diffuse (without albedo), w ambient visibility
+#define BINDING_GI_TRACE_1     14 // sampled: indirect specular (without the specular colour)
+#define BINDING_GI_TRACE_RAW   15 // sampled: BINDING_GI_TRACE_0 before it is smoothed (dithered cones)
+#define BINDING_GI_TRACE_0_STORAGE 16 // the same, storage images rgba16f
+#define BINDING_GI_TRACE_1_STORAGE 17
+#define BINDING_GI_TRACE_RAW_STORAGE 18
+#define BINDING_GI_COUNT       19
 // --- Set 0 of passes that make the voxels (they do not see the frame's set; set 1 as ever). ---
 #define BUILD_GI            0  // GiRecord, uniform
 #define BUILD_FRAME         1  // FrameRecord, uniform

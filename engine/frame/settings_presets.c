@@ -18,13 +18,13 @@ const SettingPreset setting_presets[] = {
     {"balanced",
      "gi.grid=64,gi.cascades=1,gi.format=half,gi.solid=off,gi.cosine=weighted,gi.faces=apart,"
      "gi.filter=directional,gi.bounces=2,gi.feedback=off,gi.diffuse=cones,gi.specular=on,"
-     "gi.ao=off,gi.resolution=half,gi.dither=off,gi.mips=linear,gi.share=1,gi.step_factor=0.5,"
+     "gi.ao=off,gi.resolution=half,gi.dither=on,gi.mips=linear,gi.share=1,gi.step_factor=0.5,"
      "gi.diffuse_aperture=60",
      "a small GPU"},
     {"high",
      "gi.grid=128,gi.cascades=1,gi.format=half,gi.solid=off,gi.cosine=weighted,gi.faces=apart,"
      "gi.filter=directional,gi.bounces=2,gi.feedback=on,gi.diffuse=cones,gi.specular=on,"
-     "gi.ao=off,gi.resolution=half,gi.dither=off,gi.mips=linear,gi.share=1,gi.step_factor=0.5,"
+     "gi.ao=off,gi.resolution=half,gi.dither=on,gi.mips=linear,gi.share=1,gi.step_factor=0.5,"
      "gi.diffuse_aperture=60",
      "a large GPU"},
     {"thesis",

@@ -37,11 +37,10 @@ bool gi_create(Renderer *renderer) {
     renderer->gi_build_layout = gpu_create_bind_layout(renderer->gpu, &build);
     GpuBindLayoutDesc screen = {.label = "gi screen", .count = BINDING_GI_COUNT};
     for (u32 i = 0; i < BINDING_GI_COUNT; i++)
-        screen.kinds[i] = i < BINDING_GI_FLOW          ? GPU_BINDING_UNIFORM_BUFFER
-                          : i < BINDING_GI_FIRST_IMAGE ? GPU_BINDING_STORAGE_BUFFER
-                          : i < BINDING_GI_TRACE_0_STORAGE || i == BINDING_GI_BRICKS
-                              ? GPU_BINDING_SAMPLED_TEXTURE
-                              : GPU_BINDING_STORAGE_TEXTURE;
+        screen.kinds[i] = i < BINDING_GI_FLOW              ? GPU_BINDING_UNIFORM_BUFFER
+                          : i < BINDING_GI_FIRST_IMAGE     ? GPU_BINDING_STORAGE_BUFFER
+                          : i < BINDING_GI_TRACE_0_STORAGE ? GPU_BINDING_SAMPLED_TEXTURE
+                                                           : GPU_BINDING_STORAGE_TEXTURE;
     renderer->gi_screen_layout = gpu_create_bind_layout(renderer->gpu, &screen);
     renderer->gi_sampler_linear =
         gpu_create_sampler(renderer->gpu, &(GpuSamplerDesc){.label = "gi linear"});
@@ -164,6 +163,9 @@ static void texture_shape(const Packet *packet, u32 brick_cap, RenderResource id
         break;
     case RESOURCE_GI_PROBES:
         if (params->diffuse == GI_DIFFUSE_PROBES) shape = probes;
+        break;
+    case RESOURCE_GI_TRACE_RAW:
+        if (params->dither) shape = traced;
         break;
     default:
         shape = traced;
@@ -471,6 +473,8 @@ static void bind_screen(const Renderer *r, GpuBinding *b) {
     b[BINDING_GI_BRICKS] = texture(r, RESOURCE_GI_BRICKS, r->sampler_nearest);
     b[BINDING_GI_TRACE_0] = texture(r, RESOURCE_GI_TRACE_0, r->sampler_nearest);
     b[BINDING_GI_TRACE_1] = texture(r, RESOURCE_GI_TRACE_1, r->sampler_nearest);
+    b[BINDING_GI_TRACE_RAW] = texture(r, RESOURCE_GI_TRACE_RAW, r->sampler_nearest);
+    b[BINDING_GI_TRACE_RAW_STORAGE] = texture(r, RESOURCE_GI_TRACE_RAW, none);
     b[BINDING_GI_TRACE_0_STORAGE] = texture(r, RESOURCE_GI_TRACE_0, none);
     b[BINDING_GI_TRACE_1_STORAGE] = texture(r, RESOURCE_GI_TRACE_1, none);
 }

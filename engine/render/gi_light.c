@@ -104,11 +104,11 @@ static void gather_record(const PassContext *c) {
 #define GATHER_USES                                                                                \
     USE(GI_VOXELS, STORAGE_READ_COMPUTE), USE(GI_ATTRIBUTES, STORAGE_READ_COMPUTE),                \
         USE(GI_MASKS, STORAGE_READ_COMPUTE), USE(GI_COUNTERS, INDIRECT),                           \
-        USE(GI_BASE, SAMPLED_COMPUTE), USE(GI_ATLAS, SAMPLED_COMPUTE)
+        USE_VOXEL_LIGHT(SAMPLED_COMPUTE)
 static const Pass gather_pass = {
     "voxel bounce",
     {GATHER_USES, USE(GI_RADIANCE, STORAGE_COMPUTE), USE(GI_RADIANCE_2, STORAGE_COMPUTE)},
-    8,
+    9,
     gather_record,
     NULL,
     NULL};
@@ -138,7 +138,7 @@ static bool wants_irradiance(const PassContext *c) {
 static void irradiance_record(const PassContext *c) { by_slot(c, PIPELINE_GI_IRRADIANCE, 0); }
 const Pass gi_irradiance_pass = {"voxel irradiance",
                                  {GATHER_USES, USE(GI_IRRADIANCE, STORAGE_COMPUTE)},
-                                 7,
+                                 8,
                                  irradiance_record,
                                  wants_irradiance,
                                  NULL};

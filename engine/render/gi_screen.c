@@ -1,8 +1,8 @@
 // gi_screen.c: passes that bring the voxels' light to the screen: lights with traced shadows, cones
-// from every pixel (or one in 2 x 2, 4 x 4), and the sum with what lies in HDR.
-// Data in: G-buffer, depth, the voxels' volumes, a packet's traced lights. Data out: commands.
-// Called by: pass_run (passes.c), after the lit surfaces and before the sky.
-// Does not: make voxels or filter them.
+// from every pixel (or one in 2 x 2, 4 x 4), their mean over neighbours if they are dithered, and
+// the sum with what lies in HDR. Data in: G-buffer, depth, the voxels' volumes, a packet's traced
+// lights. Data out: commands. Called by: pass_run (passes.c), after the lit surfaces and before the
+// sky. Does not: make voxels or filter them.
 //
 // Paths that shade where they draw have no G-buffer: gi_gbuffer_pass draws one (layout_of: lean) of
 // one sample a pixel. With several samples, all of a pixel's get the same light: that of its
@@ -35,31 +35,46 @@ static bool traced_needed(const PassContext *c) {
     return gi_is_on(c) && c->packet->traced_lights.count > 0;
 }
 static void traced_record(const PassContext *c) { draw_over(c, PIPELINE_GI_TRACED_LIGHTS); }
-const Pass gi_traced_pass = {
-    "gi traced lights",
-    {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
-     USE(DEPTH, DEPTH_TEST), USE(DEPTH_MS, DEPTH_TEST), USE(GI_BASE, SAMPLED_FRAGMENT),
-     USE(GI_ATLAS, SAMPLED_FRAGMENT), USE(GI_VISIBILITY, SAMPLED_FRAGMENT)},
-    12,
-    traced_record,
-    traced_needed};
+const Pass gi_traced_pass = {"gi traced lights",
+                             {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET),
+                              USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, DEPTH_TEST),
+                              USE(DEPTH_MS, DEPTH_TEST), USE_VOXEL_LIGHT(SAMPLED_FRAGMENT),
+                              USE(GI_VISIBILITY, SAMPLED_FRAGMENT)},
+                             13,
+                             traced_record,
+                             traced_needed};
 
-static void trace_record(const PassContext *c) {
-    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_TRACE, PIPELINE_PLAIN);
+// One invocation a traced pixel.
+static void by_traced_pixel(const PassContext *c, PipelineKind kind) {
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     gi_bind_screen(c, pipeline);
     const GiRecord *gi = &c->packet->gi.record;
     gpu_cmd_dispatch(c->cmd, ((u32)gi->trace[0] + 7) / 8, ((u32)gi->trace[1] + 7) / 8, 1);
 }
+
+static void trace_record(const PassContext *c) { by_traced_pixel(c, PIPELINE_GI_TRACE); }
 const Pass gi_trace_pass = {"gi trace",
                             {OVERWRITE(GI_TRACE_0, STORAGE_COMPUTE),
-                             OVERWRITE(GI_TRACE_1, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
-                             USE(DEPTH, SAMPLED_COMPUTE), USE(GI_BASE, SAMPLED_COMPUTE),
-                             USE(GI_ATLAS, SAMPLED_COMPUTE), USE(GI_IRRADIANCE, SAMPLED_COMPUTE),
-                             USE(GI_PROBES, SAMPLED_COMPUTE)},
-                            12,
+                             OVERWRITE(GI_TRACE_1, STORAGE_COMPUTE),
+                             OVERWRITE(GI_TRACE_RAW, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+                             USE(DEPTH, SAMPLED_COMPUTE), USE_VOXEL_LIGHT(SAMPLED_COMPUTE),
+                             USE(GI_IRRADIANCE, SAMPLED_COMPUTE), USE(GI_PROBES, SAMPLED_COMPUTE)},
+                            14,
                             trace_record,
                             gi_is_on};
+
+static bool smooth_needed(const PassContext *c) {
+    return gi_is_on(c) && c->packet->gi.params.dither;
+}
+static void smooth_record(const PassContext *c) { by_traced_pixel(c, PIPELINE_GI_SMOOTH); }
+const Pass gi_smooth_pass = {"gi smooth",
+                             {OVERWRITE(GI_TRACE_0, STORAGE_COMPUTE),
+                              USE(GI_TRACE_RAW, SAMPLED_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+                              USE(DEPTH, SAMPLED_COMPUTE)},
+                             8,
+                             smooth_record,
+                             smooth_needed};
 
 // With one sample a pixel by squares of pixels between the same traced ones.
 static bool compose_needed(const PassContext *c) {
@@ -77,12 +92,12 @@ static void compose_record(const PassContext *c) {
     gpu_cmd_dispatch(c->cmd, (squares[0] + 7) / 8, (squares[1] + 7) / 8, 1);
 }
 #define COMPOSE_READS(stage)                                                                       \
-    USE_GBUFFER(stage), USE(GI_TRACE_0, stage), USE(GI_TRACE_1, stage), USE(GI_BASE, stage),       \
-        USE(GI_ATLAS, stage), USE(GI_IRRADIANCE, stage), USE(GI_PROBES, stage)
+    USE_GBUFFER(stage), USE(GI_TRACE_0, stage), USE(GI_TRACE_1, stage), USE_VOXEL_LIGHT(stage),    \
+        USE(GI_IRRADIANCE, stage), USE(GI_PROBES, stage)
 const Pass gi_compose_pass = {
     "gi compose",
     {USE(HDR, STORAGE_COMPUTE), USE(DEPTH, SAMPLED_COMPUTE), COMPOSE_READS(SAMPLED_COMPUTE)},
-    13,
+    14,
     compose_record,
     compose_needed};
 
@@ -93,6 +108,6 @@ static void compose_ms_record(const PassContext *c) { draw_over(c, PIPELINE_GI_C
 const Pass gi_compose_ms_pass = {"gi compose of samples",
                                  {USE(HDR_MS, COLOR_TARGET), USE(DEPTH, SAMPLED_FRAGMENT),
                                   USE(DEPTH_MS, DEPTH_TEST), COMPOSE_READS(SAMPLED_FRAGMENT)},
-                                 14,
+                                 15,
                                  compose_ms_record,
                                  compose_ms_needed};

@@ -37,15 +37,14 @@ static void gi_view_record(const PassContext *c) {
     text_record(c, TEXT_PACKET);
     gpu_cmd_end_rendering(c->cmd);
 }
-const Pass gi_view_pass = {"gi view",
-                           {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT),
-                            USE(DEPTH, SAMPLED_FRAGMENT), USE(GI_BASE, SAMPLED_FRAGMENT),
-                            USE(GI_ATLAS, SAMPLED_FRAGMENT), USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
-                            USE(GI_VISIBILITY, SAMPLED_FRAGMENT), USE(GI_PROBES, SAMPLED_FRAGMENT),
-                            USE(GI_TRACE_0, SAMPLED_FRAGMENT), USE(GI_TRACE_1, SAMPLED_FRAGMENT),
-                            USE(GI_MASKS, READ_VERTEX), USE(GI_RANKS, READ_VERTEX),
-                            USE(GI_ATTRIBUTES, READ_VERTEX)},
-                           17,
-                           gi_view_record,
-                           NULL,
-                           NULL};
+const Pass gi_view_pass = {
+    "gi view",
+    {OVERWRITE(LDR, COLOR_TARGET), USE_GBUFFER(SAMPLED_FRAGMENT), USE(DEPTH, SAMPLED_FRAGMENT),
+     USE_VOXEL_LIGHT(SAMPLED_FRAGMENT), USE(GI_IRRADIANCE, SAMPLED_FRAGMENT),
+     USE(GI_VISIBILITY, SAMPLED_FRAGMENT), USE(GI_PROBES, SAMPLED_FRAGMENT),
+     USE(GI_TRACE_0, SAMPLED_FRAGMENT), USE(GI_TRACE_1, SAMPLED_FRAGMENT),
+     USE(GI_MASKS, READ_VERTEX), USE(GI_RANKS, READ_VERTEX), USE(GI_ATTRIBUTES, READ_VERTEX)},
+    18,
+    gi_view_record,
+    NULL,
+    NULL};

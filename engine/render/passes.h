@@ -15,6 +15,8 @@
 #define OVERWRITE_GBUFFER(use_)                                                                    \
     OVERWRITE(GBUFFER_0, use_), OVERWRITE(GBUFFER_1, use_), OVERWRITE(GBUFFER_2, use_),            \
         OVERWRITE(GBUFFER_3, use_), OVERWRITE(GBUFFER_4, use_)
+// Filtered light of the voxels, as cones read it: three of a pass's uses.
+#define USE_VOXEL_LIGHT(use_) USE(GI_BASE, use_), USE(GI_BRICKS, use_), USE(GI_ATLAS, use_)
 // Targets of GpuRendering.
 #define TARGET(id)                                                                                 \
     { .texture = c->renderer->targets[RESOURCE_##id] }
@@ -78,9 +80,10 @@ extern const Pass gi_report_pass;
         &gi_report_pass
 // gi_screen.c: from lit surfaces to such with indirect light. Forward paths have no G-buffer of
 // their own: gi_gbuffer_pass draws one.
-extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_compose_pass,
+extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_smooth_pass, gi_compose_pass,
     gi_compose_ms_pass;
-#define GI_SCREEN_PASSES &gi_traced_pass, &gi_trace_pass, &gi_compose_pass, &gi_compose_ms_pass
+#define GI_SCREEN_PASSES                                                                           \
+    &gi_traced_pass, &gi_trace_pass, &gi_smooth_pass, &gi_compose_pass, &gi_compose_ms_pass
 // gi_views.c
 extern const Pass gi_view_pass;
 // post.c

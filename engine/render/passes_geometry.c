@@ -61,8 +61,8 @@ static void over_record(const PassContext *c) {
 const Pass over_pass = {"sky and glow",
                         {USE(HDR, COLOR_TARGET), USE(HDR_MS, COLOR_TARGET), USE(DEPTH, DEPTH_TEST),
                          USE(DEPTH_MS, DEPTH_TEST), USE(SHADOW_MAP, SAMPLED_FRAGMENT),
-                         USE(GI_BASE, SAMPLED_FRAGMENT), USE(GI_ATLAS, SAMPLED_FRAGMENT),
-                         USE(GI_VISIBILITY, SAMPLED_FRAGMENT), USE(GI_PROBES, SAMPLED_FRAGMENT)},
-                        9,
+                         USE_VOXEL_LIGHT(SAMPLED_FRAGMENT), USE(GI_VISIBILITY, SAMPLED_FRAGMENT),
+                         USE(GI_PROBES, SAMPLED_FRAGMENT)},
+                        10,
                         over_record,
                         NULL};

@@ -34,6 +34,7 @@
     X(GI_BRICKS, "gi bricks", GPU_FORMAT_RGBA8)                                                    \
     X(GI_TRACE_0, "gi trace 0", GPU_FORMAT_RGBA16F)                                                \
     X(GI_TRACE_1, "gi trace 1", GPU_FORMAT_RGBA16F)                                                \
+    X(GI_TRACE_RAW, "gi trace raw", GPU_FORMAT_RGBA16F)                                            \
     X(LIST_CELLS, "list cells", GPU_FORMAT_NONE)                                                   \
     X(LIST_INDICES, "list indices", GPU_FORMAT_NONE)                                               \
     X(TILE_DEPTHS, "tile depths", GPU_FORMAT_NONE)                                                 \
@@ -165,6 +166,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_TRACED_LIGHTS, // from here on: passes over the screen
     PIPELINE_GI_FORWARD_BLEND, // blended surfaces, where voxels light them
     PIPELINE_GI_TRACE,
+    PIPELINE_GI_SMOOTH, // of dithered cones
     PIPELINE_GI_COMPOSE,
     PIPELINE_GI_COMPOSE_MS, // of several samples a pixel
     PIPELINE_GI_VIEW_VOXELS,

@@ -209,7 +209,7 @@ extern "C" {
     C(BOOL, ao, "", 1, "ao", 0, 1, "ambient occlusion by the diffuse cones")                      \
     C(BOOL, cone_shadows, "", 1, "cone_shadows", 0, 1, "lights with screen_shadow cone or volume have it") \
     C(ENUM, resolution, "full half quarter", 0, "resolution", 0, 2, "of the traced picture")      \
-    C(BOOL, dither, "", 0, "dither", 0, 1, "cones start at different lengths, against bands")     \
+    C(BOOL, dither, "", 0, "dither", 0, 1, "neighbouring cones differ, and are smoothed: against bands and blotches")     \
     C(ENUM, mips, "linear nearest", 0, "mips", 0, 1, "cones blend two levels, or take the nearer") \
     C(U32, share, "", 1, "share", 1, 64, "probes: one in so many is traced anew each tick")       \
     C(F32, probe_spacing, "m", 1, "probe_spacing", 0.05, 100, "probes: distance to the next")     \

@@ -229,7 +229,7 @@ static void check_resolutions(const char *level, u32 ticks, f64 half_ssim, f64 q
     Studio studio;
     studio_open(&studio, level);
     session_advance(&studio.session, ticks);
-    RenderImage full = draw(&studio, "tiled_deferred," GI, 192, 108);
+    RenderImage full = draw(&studio, "tiled_deferred," GI ",gi.resolution=full", 192, 108);
     static const char *const words[] = {"half", "quarter"};
     const f64 least[] = {half_ssim, quarter_ssim};
     for (u32 i = 0; i < 2; i++)
@@ -251,6 +251,45 @@ static void check_resolutions(const char *level, u32 ticks, f64 half_ssim, f64 q
 TEST_GPU(golden, gi_resolutions) { check_resolutions("data/levels/cornell.toml", 30, 0.998, 0.99); }
 TEST_GPU(golden, gi_resolutions_in_the_cloister) {
     check_resolutions("data/levels/cloister.toml", 90, 0.97, 0.95);
+}
+
+// --- Dithered cones ---
+
+// How much pictures change within a few pixels, in 255ths: what differs between a pixel and the
+// mean of those two pixels away to its left and right.
+static f64 grain(RenderImage image) {
+    f64 sum = 0.0;
+    for (u32 y = 0; y < image.height_px; y++)
+        for (u32 x = 2; x + 2 < image.width_px; x++)
+            for (u32 c = 0; c < 3; c++) {
+                const u8 *p = &image.rgba[(y * image.width_px + x) * 4 + c];
+                sum += fabs((f64)p[0] - 0.5 * ((f64)p[-8] + (f64)p[8]));
+            }
+    return sum / ((f64)image.width_px * image.height_px * 3);
+}
+
+// Faces apart: every pixel's six cones miss the same parts of the hemisphere, which shows as
+// blotches. Dithered, 16 neighbours' cones lean 16 ways, and their mean shows no pattern of 4 x 4.
+TEST_GPU(golden, gi_dither_takes_blotches_and_leaves_no_pattern) {
+    static const char *const resolutions[] = {"full", "half"};
+    Studio studio;
+    studio_open(&studio, "data/levels/emissive_teapot.toml");
+    for (u32 i = 0; i < COUNT_OF(resolutions); i++) {
+        RenderImage images[2];
+        for (u32 dither = 0; dither < 2; dither++) {
+            char list[200];
+            snprintf(list, sizeof list,
+                     "tiled_deferred,gi.enabled=on,gi.grid=64,gi.faces=apart,gi.diffuse=cones,"
+                     "gi.specular=off,gi.ao=off,gi.resolution=%s,gi.dither=%s",
+                     resolutions[i], dither ? "on" : "off");
+            images[dither] = draw(&studio, list, 320, 180);
+        }
+        f64 plain = grain(images[0]), dithered = grain(images[1]);
+        printf("%s: grain %.3f, dithered %.3f\n", resolutions[i], plain, dithered);
+        if (!is_other_picture(images[0], images[1])) fail_msg("%s: not dithered", resolutions[i]);
+        if (dithered > plain) fail_msg("%s: a pattern is left", resolutions[i]);
+    }
+    studio_close(&studio);
 }
 
 // --- Off is off; any settings ---
