@@ -11,11 +11,15 @@ typedef f32 f32x8 __attribute__((vector_size(32), aligned(32), may_alias));
 typedef i32 i32x8 __attribute__((vector_size(32), aligned(32), may_alias));
 
 // ThreadSanitizer and clang cannot follow the resolver; they get the plain function.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && \
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define SIMD_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+// Whether the clone that runs here can shuffle the lanes of a vector by a variable in one
+// instruction; without, a shuffle is many.
+#define SIMD_HAS_SHUFFLE (__builtin_cpu_supports("avx2") != 0)
 #else
 #define SIMD_CLONES
+#define SIMD_HAS_SHUFFLE false
 #endif
 
 // A macro: a function that returns a vector would have another ABI in each clone.

@@ -6,16 +6,10 @@
 // (shaders narrow the lists), or drop a light: lists too long for memory become the list of all.
 //
 // Three linear steps (specification of direct lighting, 6.2): boxes of cells of every light ->
-// counts and their prefix sum -> fill. Counting costs four additions a box, not one a cell: a box
-// is four corners of a difference image, whose running sums are the counts. Filling goes by bands
-// of rows, each written by one job, class after class: where a cell's cursor stands between two
-// classes is their border. So the result does not depend on the number of threads.
+// counts and their prefix sum -> fill (light_grid_fill.c). Counting costs four additions a box, not
+// one a cell: a box is four corners of a difference image, whose running sums are the counts.
 #include "light_grid.h"
-#include "../base/jobs.h"
 #include "../base/log.h"
-
-#define FILL_ROWS_PER_JOB 8
-#define FILL_BANDS        16 // of a cluster grid, at most
 
 // ---- counting ----
 
@@ -107,81 +101,8 @@ LightGridPlan light_grid_plan(const LightGridInput *input, Arena *scratch) {
         plan.lights_listed += any;
     }
     place_lists(&plan, count_lights(&plan, plan.list_first, scratch));
+    light_grid_plan_fill(&plan, scratch);
     return plan;
-}
-
-// ---- filling ----
-
-typedef struct FillJob {
-    const LightGridPlan *plan;
-    u32 *cursor; // [cell_count] next place in a cell's list
-    u32 *indices;
-    CellRecord *cells;
-    u32 class_end[LIGHT_CLASSES]; // light index
-} FillJob;
-
-// Writes the lights [begin, end) into the rows [row_begin, row_end).
-static void fill_lights(const FillJob *job, u32 begin, u32 end, u32 row_begin, u32 row_end) {
-    const LightGridPlan *plan = job->plan;
-    u32 tiles_x = plan->tiles_x, *indices = job->indices;
-    for (u32 i = begin; i < end; i++) {
-        for (u32 b = plan->box_first[i]; b < plan->box_first[i + 1]; b++) {
-            CellBox box = plan->boxes[b];
-            if (box.row >= row_end) break;
-            u32 y_end = MIN(box.row + box.rows, row_end);
-            for (u32 y = MAX(box.row, row_begin); y < y_end; y++) {
-                u32 *cursor = job->cursor + (u64)y * tiles_x;
-                if (plan->sharing) {
-                    for (u32 x = box.x0; x <= box.x1; x++)
-                        if (cursor[x] != UINT32_MAX) indices[cursor[x]++] = i;
-                } else {
-                    for (u32 x = box.x0; x <= box.x1; x++) indices[cursor[x]++] = i;
-                }
-            }
-        }
-    }
-}
-
-static void job_fill(void *context, u32 row_begin, u32 row_end, u32 thread_index) {
-    (void)thread_index;
-    const FillJob *job = context;
-    u32 first = row_begin * job->plan->tiles_x, last = row_end * job->plan->tiles_x;
-    const u32 *end = job->class_end;
-    // Records hold the classes' ends until all are known.
-    for (u32 i = first; i < last; i++) job->cells[i].list[0] = job->cursor[i];
-    for (u32 class = 0; class < LIGHT_CLASSES; class ++) {
-        fill_lights(job, class ? end[class - 1] : 0, end[class], row_begin, row_end);
-        if (class + 1 == LIGHT_CLASSES) break;
-        for (u32 i = first; i < last; i++) job->cells[i].list[class + 1] = job->cursor[i];
-    }
-    for (u32 i = first; i < last; i++) {
-        u32 *list = job->cells[i].list, at[LIGHT_CLASSES + 1];
-        for (u32 class = 0; class < LIGHT_CLASSES; class ++) at[class] = list[class];
-        at[LIGHT_CLASSES] = job->cursor[i];
-        if (at[0] == UINT32_MAX) {
-            at[0] = 0;
-            for (u32 class = 0; class < LIGHT_CLASSES; class ++) at[class + 1] = end[class];
-        }
-        list[0] = at[0];
-        list[1] = at[2] - at[0];
-        list[2] = at[4] - at[2];
-        list[3] = MIN(at[2] - at[1], 0xFFFF) | MIN(at[4] - at[3], 0xFFFF) << 16;
-    }
-}
-
-void light_grid_fill(LightGridPlan *plan, CellRecord *cells, u32 *indices) {
-    const LightGridInput *in = &plan->input;
-    FillJob job = {.plan = plan,
-                   .cursor = plan->list_first,
-                   .indices = indices,
-                   .cells = cells,
-                   .class_end = {MIN(in->highlight_points, in->point_count), in->point_count,
-                                 MIN(in->point_count + in->highlight_spots, in->count), in->count}};
-    if (plan->sharing)
-        for (u32 i = 0; i < in->count; i++) indices[i] = i;
-    u32 rows = plan->tiles_y * plan->slices, slices = (plan->slices + FILL_BANDS - 1) / FILL_BANDS;
-    u32 grain = plan->slices > 1 ? slices * plan->tiles_y : FILL_ROWS_PER_JOB;
-    jobs_for(rows, grain, job_fill, &job);
 }
 
 LightGrid light_grid_build(const LightGridInput *input, Arena *arena) {

@@ -5,7 +5,8 @@
 //   light_grid_input.c  a packet's records as columns
 //   light_tiles.c       cells that a light touches: tiles, by rectangle or by rows
 //   light_clusters.c    the same for clusters, and how depth is sliced
-//   light_grid.c        counts, offsets, lists
+//   light_grid.c        counts, offsets
+//   light_grid_fill.c   lists
 #ifndef LUZ_LIGHT_GRID_H
 #define LUZ_LIGHT_GRID_H
 #include "../base/screen_bounds.h"
@@ -35,6 +36,14 @@ typedef struct LightGridPlan {
     u32 longest;       // lights in the fullest cell
     u32 lights_listed; // lights that touch any cell
     u32 fallbacks;     // cells that share the list of all lights
+    // For the fill (light_grid_fill.c). A run is a light's columns in a block: some cells of a row.
+    u32 blocks_x, block_count; // a row's, all
+    u32 *run_first;            // [block_count + 1] of a block's runs, in the order of the lights
+    u32 *run_end;              // [LIGHT_CLASSES * block_count] by class: behind a block's last run
+    u32 *run_lights;           // [runs]
+    u16 *run_columns;          // [runs]
+    u64 *block_bits;           // [threads * block_bits_stride] room for a block
+    u64 block_bits_stride;
 } LightGridPlan;
 
 // Memory from scratch, to be kept until after the fill.
@@ -42,7 +51,9 @@ LightGridPlan light_grid_plan(const LightGridInput *input, Arena *scratch);
 // cells [cell_count], indices [index_count]. Uses the plan up.
 void light_grid_fill(LightGridPlan *plan, CellRecord *cells, u32 *indices);
 
-// Steps of the plan: fill in boxes and box_first. Any number of threads.
+// Steps of the plan. Room for the fill, once there are boxes:
+void light_grid_plan_fill(LightGridPlan *plan, Arena *scratch);
+// Fill in boxes and box_first. Any number of threads.
 void light_tiles_boxes(LightGridPlan *plan, Arena *scratch);
 void light_clusters_boxes(LightGridPlan *plan, Arena *scratch);
 

@@ -83,6 +83,8 @@ typedef struct ClusterSlices {
     f32 scale, offset;
     f32 end, factor;   // view depth in m where slice 0 ends; ends of slices grow by the factor
 } ClusterSlices;
+// How many indices are written at once: what the machine does best, or, for tests, one or eight.
+typedef enum GridFill { GRID_FILL_AUTO, GRID_FILL_BY_ONE, GRID_FILL_BY_EIGHT } GridFill;
 typedef struct LightGridInput {
     const f32 *x, *y, *z, *radius; // view space; [count]; a spot's is its cone's smallest sphere
     u32 count, point_count;        // lights >= point_count are spots
@@ -91,6 +93,7 @@ typedef struct LightGridInput {
     u32 highlight_points, highlight_spots; // the first so many points and spots have a highlight
     LightCones cones;              // all NULL = spots are taken for their spheres
     GridMethod method;             // of tiles: rectangle, else the tile's frustum
+    GridFill fill;
     ClusterSlices slices;
 } LightGridInput;
 // From a packet's records (light_grid_input.c): counts, camera and lens from `frame`, tile size

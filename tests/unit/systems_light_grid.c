@@ -5,6 +5,7 @@
 #include "../test.h"
 #include "../../engine/base/jobs.h"
 #include "../../engine/base/random.h"
+#include "../../engine/systems/light_grid.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -343,6 +344,78 @@ TEST(systems_light_grid, threads_do_not_matter) {
         arena_reset(&arenas.scratch);
     }
     light_twin_destroy(twin);
+    arenas_destroy(&arenas);
+}
+
+// ---- filling ----
+
+// The list of a cell, by asking every box of every light.
+static u32 naive_list(const LightGridPlan *plan, u32 cell, u32 *list) {
+    u32 row = cell / plan->tiles_x, x = cell % plan->tiles_x, count = 0;
+    for (u32 i = 0; i < plan->input.count; i++)
+        for (u32 b = plan->box_first[i]; b < plan->box_first[i + 1]; b++) {
+            const CellBox *box = &plan->boxes[b];
+            if (row >= box->row && row < box->row + box->rows && x >= box->x0 && x <= box->x1)
+                list[count++] = i;
+        }
+    return count;
+}
+
+// One index at a time or eight at once: the same lists, and nothing is written beyond them.
+TEST(systems_light_grid, lists_by_one_and_by_eight_equal_asking_every_box) {
+    enum { MARK = 0xFEEDBEEF };
+    const u64 seed = 0xF111;
+    printf("seed %llx\n", (unsigned long long)seed);
+    Arenas arenas;
+    assert_true(arenas_create(&arenas));
+    // Numbers of lights around the words of bits; pictures of one block of columns, and of more.
+    const u32 counts[] = {1, 63, 64, 65, 192, 256, 300};
+    const u32 sizes[][2] = {{320, 180}, {61, 90}, {2570, 40}};
+    u64 entries = 0;
+    for (u32 round = 0; round < COUNT_OF(counts) * COUNT_OF(sizes); round++) {
+        const u32 *size = sizes[round % COUNT_OF(sizes)], count = counts[round % COUNT_OF(counts)];
+        LightTwin *twin = light_twin_create(seed + round, count, size[0], size[1], 0.1f, 20.0f,
+                                            round % 2 ? 6.0f : 1.0f);
+        RenderSettings settings = settings_default();
+        settings.tile_px = TILE_8;
+        LightGridInput input =
+            light_grid_input(&twin->frame, twin->lights, twin->spots, &settings, &arenas.scratch);
+        input.method = round % 2 ? GRID_RECT : GRID_FRUSTUM;
+        if (round % 3 == 1) input.slices = light_cluster_slices(&input, CLUSTER_CELLS_CAP);
+        u32 *list = calloc(input.count + 1, sizeof *list);
+        for (GridFill fill = GRID_FILL_AUTO; fill <= GRID_FILL_BY_EIGHT; fill++) {
+            input.fill = fill;
+            LightGridPlan plan = light_grid_plan(&input, &arenas.scratch);
+            CellRecord *cells = calloc(plan.cell_count, sizeof *cells);
+            u32 *indices = calloc(plan.index_count + 1, sizeof *indices), cursor = 0;
+            indices[plan.index_count] = MARK;
+            light_grid_fill(&plan, cells, indices);
+            assert_int_equal(indices[plan.index_count], MARK);
+            for (u32 cell = 0; cell < plan.cell_count; cell++) {
+                u32 length = naive_list(&plan, cell, list), classes[4] = {0};
+                for (u32 k = 0; k < length; k++) {
+                    bool spot = list[k] >= input.point_count;
+                    bool diffuse = spot ? list[k] - input.point_count >= input.highlight_spots
+                                        : list[k] >= input.highlight_points;
+                    classes[spot * 2 + diffuse]++;
+                }
+                assert_int_equal(cells[cell].list[0], cursor);
+                assert_int_equal(cells[cell].list[1], classes[0] + classes[1]);
+                assert_int_equal(cells[cell].list[2], classes[2] + classes[3]);
+                assert_int_equal(cells[cell].list[3], classes[1] | classes[3] << 16);
+                if (length) assert_memory_equal(indices + cursor, list, length * sizeof *list);
+                cursor += length;
+            }
+            assert_int_equal(cursor, plan.index_count);
+            entries += cursor;
+            free(indices), free(cells);
+        }
+        free(list);
+        arena_reset(&arenas.scratch);
+        light_twin_destroy(twin);
+    }
+    printf("%llu entries\n", (unsigned long long)entries);
+    assert_true(entries > 100000);
     arenas_destroy(&arenas);
 }
 
