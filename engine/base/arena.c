@@ -94,16 +94,22 @@ static void arena_commit(Arena *arena, u64 end) {
     ASAN_POISON(arena->memory + committed, needed - committed);
 }
 
-void *arena_push(Arena *arena, u64 size, u64 align) {
+void *arena_push_unset(Arena *arena, u64 size, u64 align) {
     LUZ_ASSERT(align > 0 && (align & (align - 1)) == 0 && align <= PAGE_SIZE);
     if (!arena_can_push(arena, size, align)) arena_fail(arena, "is full", size);
     u64 start = ALIGN_UP(arena->used, align), end = start + size;
     arena_commit(arena, end);
-    u8 *memory = arena->memory + start;
-    ASAN_UNPOISON(memory, size);
-    if (start < arena->high_water) memset(memory, 0, MIN(end, arena->high_water) - start);
+    ASAN_UNPOISON(arena->memory + start, size);
     arena->used = end;
     arena->high_water = MAX(arena->high_water, end);
+    return arena->memory + start;
+}
+
+void *arena_push(Arena *arena, u64 size, u64 align) {
+    u64 touched = arena->high_water;
+    u8 *memory = arena_push_unset(arena, size, align);
+    u64 start = (u64)(memory - arena->memory);
+    if (start < touched) memset(memory, 0, MIN(start + size, touched) - start);
     return memory;
 }
 

@@ -28,6 +28,8 @@ void arena_destroy(Arena *arena);
 // Zeroed memory, aligned to align (a power of two). Overflow is an assert that names the arena:
 // sizes that come from outside must be checked by the caller first (arena_can_push).
 void *arena_push(Arena *arena, u64 size, u64 align);
+// The same, but with whatever bytes lie there: for large arrays that are written as a whole.
+void *arena_push_unset(Arena *arena, u64 size, u64 align);
 bool arena_can_push(const Arena *arena, u64 size, u64 align);
 // Position to return to; arena_rewind gives back (and poisons) everything after it.
 u64 arena_mark(const Arena *arena);
@@ -41,6 +43,8 @@ void arenas_destroy(Arenas *arenas);
 
 #define ARENA_PUSH(arena, Type, count) \
     ((Type *)arena_push((arena), sizeof(Type) * (u64)(count), MAX(__alignof__(Type), 16)))
+#define ARENA_PUSH_UNSET(arena, Type, count) \
+    ((Type *)arena_push_unset((arena), sizeof(Type) * (u64)(count), MAX(__alignof__(Type), 16)))
 #define ARENA_PUSH_COLUMN(arena, Type, count) \
     ((Type *)arena_push((arena), ALIGN_UP(sizeof(Type) * (u64)(count), CACHE_LINE), CACHE_LINE))
 

@@ -35,7 +35,12 @@ static bool layout_sections(const PacketSizes *sizes, Layout *layout) {
 Packet *packet_allocate(Arena *arena, const PacketSizes *sizes) {
     Layout layout;
     LUZ_ASSERT(layout_sections(sizes, &layout));
-    Packet *packet = arena_push(arena, layout.size, CACHE_LINE);
+    // Light lists can be most of the packet, and are written as a whole: only what surrounds them.
+    u64 lists_begin = layout.light_indices.offset,
+        lists_end = lists_begin + layout.light_indices.count * sizeof(u32);
+    Packet *packet = arena_push_unset(arena, layout.size, CACHE_LINE);
+    memset(packet, 0, lists_begin);
+    memset((u8 *)packet + lists_end, 0, layout.size - lists_end);
     packet->magic = PACKET_MAGIC;
     packet->version = PACKET_VERSION;
     packet->size = layout.size;

@@ -185,7 +185,7 @@ typedef struct PacketSizes {
     PACKET_SECTIONS(X)
 #undef X
 } PacketSizes;
-// Zeroed block in the arena with the sections laid out.
+// Block in the arena with the sections laid out, zeroed except for the light indices.
 Packet *packet_allocate(Arena *arena, const PacketSizes *sizes);
 #define PACKET_WRITE(packet, section, Type) ((Type *)((u8 *)(packet) + (packet)->section.offset))
 

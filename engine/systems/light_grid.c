@@ -114,8 +114,8 @@ LightGrid light_grid_build(const LightGridInput *input, Arena *arena) {
                       .index_count = plan.index_count,
                       .longest = plan.longest,
                       .fallbacks = plan.fallbacks};
-    grid.cells = ARENA_PUSH(arena, CellRecord, plan.cell_count);
-    grid.indices = ARENA_PUSH(arena, u32, plan.index_count);
+    grid.cells = ARENA_PUSH_UNSET(arena, CellRecord, plan.cell_count);
+    grid.indices = ARENA_PUSH_UNSET(arena, u32, plan.index_count);
     light_grid_fill(&plan, grid.cells, grid.indices);
     return grid;
 }

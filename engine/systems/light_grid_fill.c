@@ -204,14 +204,14 @@ void light_grid_plan_fill(LightGridPlan *plan, Arena *scratch) {
         most = MAX(most, first[b + 1]);
         first[b + 1] += first[b];
     }
-    plan->run_end = ARENA_PUSH(scratch, u32, (u64)count * LIGHT_CLASSES);
+    plan->run_end = ARENA_PUSH_UNSET(scratch, u32, (u64)count * LIGHT_CLASSES);
     // Eight more: lights are read eight at a time.
-    plan->run_lights = ARENA_PUSH(scratch, u32, (u64)first[count] + 8);
-    plan->run_columns = ARENA_PUSH(scratch, u16, first[count]);
+    plan->run_lights = ARENA_PUSH_UNSET(scratch, u32, (u64)first[count] + 8);
+    plan->run_columns = ARENA_PUSH_UNSET(scratch, u16, first[count]);
     // One word more: that behind a class that ends with the last word is looked at.
     u64 words = ALIGN_UP((u64)most, 256) / 64 * (BLOCK_COLUMNS + 1) + 1;
     plan->block_bits_stride = ALIGN_UP(words, CACHE_LINE / sizeof(u64));
-    plan->block_bits = arena_push(
+    plan->block_bits = arena_push_unset(
         scratch, sizeof(u64) * plan->block_bits_stride * jobs_thread_count(), CACHE_LINE);
 }
 

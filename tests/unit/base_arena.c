@@ -11,6 +11,26 @@ static bool all_bytes_are(const u8 *bytes, u64 size, u8 value) {
     return true;
 }
 
+// What is not zeroed moves the arena like what is, and what is pushed later is zero all the same.
+TEST(arena, unset_memory_keeps_what_lay_there) {
+    Arena arena;
+    assert_true(arena_create(&arena, "unset", MIB(64)));
+    u8 *first = arena_push(&arena, 5000, 64);
+    memset(first, 0xA5, 5000);
+    arena_rewind(&arena, 0);
+    u8 *unset = arena_push_unset(&arena, 3000, 64);
+    assert_ptr_equal(unset, first);
+    assert_int_equal(arena.used, 3000);
+#if !defined(LUZ_POISON) && !defined(__SANITIZE_ADDRESS__)
+    assert_int_equal(unset[2999], 0xA5);
+#endif
+    memset(unset, 0xA5, 3000);
+    arena_rewind(&arena, 1000);
+    u8 *zeroed = arena_push(&arena, 9000, 16);
+    for (u32 i = 0; i < 9000; i++) assert_int_equal(zeroed[i], 0);
+    arena_destroy(&arena);
+}
+
 TEST(arena, pushes_aligned_zeroed_memory_again_and_again) {
     Arena arena;
     assert_true(arena_create(&arena, "test", MIB(32)));
