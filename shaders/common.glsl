@@ -37,6 +37,7 @@ layout(constant_id = SPEC_CLUSTER_NORMALS) const uint CLUSTER_NORMALS = 0;
 layout(constant_id = SPEC_VERTEX_LIGHTING) const uint VERTEX_LIGHTING = 0;
 layout(constant_id = SPEC_POST) const uint POST = 0;
 layout(constant_id = SPEC_LIGHT_BLOCKS) const uint LIGHT_BLOCKS = 0;
+layout(constant_id = SPEC_LIST_KINDS) const uint LIST_KINDS = 3;
 
 const float PI = 3.14159265358979;
 

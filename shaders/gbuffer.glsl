@@ -145,9 +145,10 @@ vec3 pixel_ray(ivec2 pixel) {
     return frame.ray_right.xyz * ndc.x + frame.ray_up.xyz * ndc.y + frame.ray_forward.xyz;
 }
 
-GbufferPixel gbuffer_read(ivec2 pixel) {
+// depth: what the depth buffer holds there.
+GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
     GbufferPixel g;
-    g.depth = texelFetch(gbuffer_depth, pixel, 0).x;
+    g.depth = depth;
     g.material = 0u;
     g.specular = vec4(0.0, 0.0, 0.0, 1.0);
     g.oren_nayar = frame.common_lobes.zw;
@@ -232,6 +233,9 @@ GbufferPixel gbuffer_read(ivec2 pixel) {
         g.accumulated = texelFetch(gbuffer_3, pixel, 0).rgb;
     }
     return g;
+}
+GbufferPixel gbuffer_read(ivec2 pixel) {
+    return gbuffer_read_at(pixel, texelFetch(gbuffer_depth, pixel, 0).x);
 }
 
 // What lights shine on.

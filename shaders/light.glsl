@@ -104,7 +104,7 @@ vec3 brdf(Surface s, vec3 l, float n_dot_l, float highlight) {
         specular += (vec3(s.lobes.y) - specular) * f;
     }
     vec3 diffuse = brdf_diffuse(s, l, n_dot_l);
-    if ((BRDF_MASK & 14u) == 0u) return diffuse; // no specular lobe in this level
+    if ((BRDF_MASK & BRDF_MASK_HIGHLIGHTS) == 0u) return diffuse; // no specular lobe in this level
     return diffuse + specular * (highlight * specular_power(cosine, length2, s.power));
 }
 

@@ -177,7 +177,8 @@ typedef struct MeshVertex {
 #define SPEC_GI_RESOLUTION 38 // log2 of pixels a traced one covers along a side: 0, 1, 2
 #define SPEC_GI_TRACED     39 // bit 0: cones, bit 1: visibility volume; of lights with traced shadows
 #define SPEC_GI_BRICKS     40 // 1 = the base volume has bricks where voxels are, 0 = it is whole
-#define SPEC_COUNT         41
+#define SPEC_LIST_KINDS    41 // LIST_KIND_*: what shading by lists must be ready for
+#define SPEC_COUNT         42
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
 #define GBUFFER_LAYOUT_LEAN       0
@@ -210,6 +211,7 @@ typedef struct MeshVertex {
 #define DEBUG_GI_PROBES   30
 #define DEBUG_GI_LEAKS    31
 
+#define BRDF_MASK_HIGHLIGHTS 14 // all but Lambert's
 #define BRDF_MASK_OREN_NAYAR 16
 #define BRDF_MASK_FRESNEL    32
 
@@ -218,6 +220,9 @@ typedef struct MeshVertex {
 #define LIGHT_CLASSES     4
 // Lights of a tile that a subgroup keeps after culling; if more survive it shades the whole list.
 #define SURVIVORS_CAP     512
+// SPEC_LIST_KINDS. A loop for what is not there costs as much as one for a light.
+#define LIST_KIND_LONG    1 // lists may be longer than SURVIVORS_CAP
+#define LIST_KIND_DIFFUSE 2 // there are lights without a highlight, and surfaces that show one
 #define MULTIPASS_LIGHTS  8 // lights of a group of path `multipass`
 #define MATERIALS_CAP     256
 #define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one

@@ -12,7 +12,9 @@
 // serves 64 pixels where subgroups are small (software driver: 8 lanes). Every tile is at least 8
 // pixels wide: a group has one list.
 // If a list of survivors overflows SURVIVORS_CAP, the whole tile's list is shaded: no light is lost.
+// Loops end with their test where they can (why: list_shade.glsl).
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "subgroups.glsl"
 #include "gbuffer.glsl"
 #include "cells.glsl"
@@ -34,7 +36,8 @@ ivec2 pixel_of(uint round) {
 // Appends list entries [first, last) that touch the box. Returns the new count, which may pass the
 // cap: then nothing more was stored.
 uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uint count) {
-    for (uint b = first; b < last; b += gl_SubgroupSize) {
+    if (first >= last) return count;
+    for (uint b = first;;) {
         uint k = b + gl_SubgroupInvocationID;
         uint index = cell_index(min(k, last - 1u));
         vec4 position = light_position(index);
@@ -45,6 +48,8 @@ uint cull(uint first, uint last, vec3 box_min, vec3 box_max, uint list_base, uin
         uint slot = count + subgroupBallotExclusiveBitCount(ballot);
         if (hit && slot < SURVIVORS_CAP) survivors[list_base + slot] = index;
         count += subgroupBallotBitCount(ballot);
+        b += gl_SubgroupSize;
+        if (b >= last) break;
     }
     return count;
 }
@@ -59,9 +64,11 @@ void main() {
     uvec4 list = cell_list(tile.y * flow.grid.x + tile.x), list_ends = cell_classes(list);
 
     vec3 lane_min = vec3(1e30), lane_max = vec3(-1e30);
-    for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
+    float depths[PIXELS_PER_LANE];
+    [[unroll]] for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
         // Only what the position needs is read: the compiler drops the rest.
         GbufferPixel g = gbuffer_read(min(pixel_of(round), size - 1));
+        depths[round] = g.depth;
         lane_min = min(lane_min, g.depth > 0.0 ? g.position : vec3(1e30));
         lane_max = max(lane_max, g.depth > 0.0 ? g.position : vec3(-1e30));
     }
@@ -74,34 +81,38 @@ void main() {
     uvec4 counts = uvec4(0u); // survivors up to the end of each class
     if (SUBGROUP_CULL != 0u) {
         uvec4 ends = any_lit ? list_ends : uvec4(0u);
-        counts.x = cull(list.x, ends.x, box_min, box_max, list_base, 0u);
-        counts.y = cull(list_ends.x, ends.y, box_min, box_max, list_base, counts.x);
+        bool split = (LIST_KINDS & LIST_KIND_DIFFUSE) != 0u; // else the first of two is not needed
+        if (split) counts.x = cull(list.x, ends.x, box_min, box_max, list_base, 0u);
+        counts.y = cull(split ? list_ends.x : list.x, ends.y, box_min, box_max, list_base, counts.x);
         counts.zw = counts.yy;
         if (SPOTS != 0u) {
-            counts.z = cull(list_ends.y, ends.z, box_min, box_max, list_base, counts.y);
-            counts.w = cull(list_ends.z, ends.w, box_min, box_max, list_base, counts.z);
+            if (split) counts.z = cull(list_ends.y, ends.z, box_min, box_max, list_base, counts.y);
+            counts.w = cull(split ? list_ends.z : list_ends.y, ends.w, box_min, box_max, list_base,
+                            counts.z);
         }
         subgroupMemoryBarrierShared();
         subgroupBarrier();
     }
     // One of the two lists is empty. To choose inside the loops would read both.
-    bool from_tile = SUBGROUP_CULL == 0u || counts.w > SURVIVORS_CAP;
+    bool may_overflow = (LIST_KINDS & LIST_KIND_LONG) != 0u;
+    bool from_tile = SUBGROUP_CULL == 0u || may_overflow && counts.w > SURVIVORS_CAP;
     uvec4 ends = from_tile || !any_lit ? uvec4(list_base) : list_base + counts;
     uvec4 tile_ends = from_tile && any_lit ? list_ends : uvec4(list.x);
 
-    for (uint round = 0u; round < PIXELS_PER_LANE; round++) {
+    for (uint round = 0u;;) {
         ivec2 pixel = pixel_of(round);
-        GbufferPixel g = gbuffer_read(min(pixel, size - 1));
+        GbufferPixel g = gbuffer_read_at(min(pixel, size - 1), depths[round]);
         Surface s = gbuffer_surface(g);
         vec3 sum = vec3(0.0);
         if (SUBGROUP_CULL != 0u) {
             sum = shade_list(s, false, list_base, ends);
-            sum += shade_list_seldom(s, true, list.x, tile_ends);
+            if (may_overflow) sum += shade_list_merged(s, true, list.x, tile_ends);
         } else {
             sum = shade_list(s, true, list.x, tile_ends);
         }
         vec3 radiance = gbuffer_radiance(g, s, sum);
         if (pixel.x < size.x && pixel.y < size.y)
             imageStore(hdr, pixel, vec4(g.depth > 0.0 ? radiance : vec3(0.0), 1.0));
+        if (++round >= PIXELS_PER_LANE) break;
     }
 }

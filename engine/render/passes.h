@@ -24,6 +24,8 @@
     { .texture = c->renderer->targets[RESOURCE_##id], .clear = true }
 
 void bind_frame(const PassContext *c, GpuPipeline pipeline);
+// Warming up: compiles a shading pass for all kinds of lists (LIST_KIND_*) that may come.
+void warm_up_list_kinds(const PassContext *c, PipelineKind kind);
 // Begins rendering at the packet's resolution.
 void begin(const PassContext *c, const GpuRendering *rendering);
 void draw_fullscreen(const PassContext *c, PipelineKind kind);

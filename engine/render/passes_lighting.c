@@ -45,7 +45,22 @@ const Pass resolve_pass = {"resolve",
                            resolve_record,
                            NULL};
 
+void warm_up_list_kinds(const PassContext *c, PipelineKind kind) {
+    if (!c->renderer->is_warming_up) return;
+    bool may_be_long = c->packet->lights.count > SURVIVORS_CAP;
+    for (u32 kinds = 1; kinds <= (LIST_KIND_LONG | LIST_KIND_DIFFUSE); kinds++) {
+        if (kinds & LIST_KIND_LONG && !may_be_long) continue;
+        if (kinds & LIST_KIND_DIFFUSE && !c->packet->settings.light_lod) continue;
+        PipelineVariant variant = {.list_kinds = kinds};
+        GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, variant);
+        if (!pipeline.id) continue;
+        bind_frame(c, pipeline);
+        gpu_cmd_dispatch(c->cmd, 1, 1, 1);
+    }
+}
+
 static void tiled_record(const PassContext *c) {
+    warm_up_list_kinds(c, PIPELINE_TILED);
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);

@@ -211,6 +211,7 @@ const Pass cluster_report_pass = {"cluster report",
 // --- Shading ---
 
 static void clustered_record(const PassContext *c) {
+    warm_up_list_kinds(c, PIPELINE_CLUSTERED);
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_CLUSTERED, PIPELINE_PLAIN);
     if (!pipeline.id) return;
     bind_frame(c, pipeline);

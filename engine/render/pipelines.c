@@ -35,7 +35,8 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
      SPEC_BIT(SPEC_SAMPLES))
 // What a pass needs that shades by lists.
 #define SPEC_SHADE_LISTS                                                                           \
-    (SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_CLUSTERED))
+    (SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_CLUSTERED) |          \
+     SPEC_BIT(SPEC_LIST_KINDS))
 // What a pass needs to read lights by lists.
 #define SPEC_LISTS                                                                                 \
     (SPEC_BIT(SPEC_CELL_LISTS) | SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_CLUSTERED) |            \
@@ -549,13 +550,29 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
 // counted together): a tile with very many lights must not be shaded by 8 rounds of one invocation.
 #define LOOP_ITERATIONS_SAFE 60000
 
+// Lights of the longest list. Of lists made on the device it is not known here: at most all.
+static u64 longest_list(const Packet *packet) {
+    return device_lists_used(&packet->settings) ? packet->lights.count
+                                                : packet->counts.cell_light_max;
+}
+
 static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
     u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
-    // How long lists made on the device are is not known here: at most all lights.
-    u64 longest =
-        device_lists_used(&packet->settings) ? packet->lights.count : packet->counts.cell_light_max;
+    u64 longest = longest_list(packet);
     while (pixels > 1 && longest * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE) pixels /= 2;
     return pixels;
+}
+
+// LIST_KIND_* of a packet; `wanted` beside those. Only the tiled path cares about long lists.
+static u32 list_kinds(const Packet *packet, PipelineKind kind, u32 wanted) {
+    const FrameRecord *frame = &packet->frame;
+    u32 kinds = wanted;
+    if (longest_list(packet) > SURVIVORS_CAP) kinds |= LIST_KIND_LONG;
+    if (frame->counts3[0] < frame->counts[0] || frame->counts3[1] < frame->counts[1])
+        kinds |= LIST_KIND_DIFFUSE;
+    if (kind != PIPELINE_TILED) kinds &= ~(u32)LIST_KIND_LONG;
+    if (!(packet->brdf_mask & BRDF_MASK_HIGHLIGHTS)) kinds &= ~(u32)LIST_KIND_DIFFUSE;
+    return kinds;
 }
 
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
@@ -603,6 +620,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
         [SPEC_DIRECTIONALS] = packet->frame.counts[2],
         [SPEC_LIGHT_BLOCKS] = packet_fits_light_blocks(packet),
+        [SPEC_LIST_KINDS] = list_kinds(packet, kind, variant.list_kinds),
         [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
         [SPEC_GI_FACES] = gi->faces,
         [SPEC_GI_MIPS] = gi->mips == GI_MIPS_NEAREST ? GI_READ_NEAREST

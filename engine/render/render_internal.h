@@ -407,6 +407,7 @@ typedef struct PipelineVariant {
     u32 textures;   // see SPEC_TEXTURES
     u32 vertex_lit; // PacketDraw.vertex_lit
     u32 post;       // SPEC_POST
+    u32 list_kinds; // SPEC_LIST_KINDS, beside what the packet needs
 } PipelineVariant;
 // pipelines.c: from the cache or newly made. {0} if the device refuses (LOG).
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
