@@ -51,8 +51,8 @@ uint gi_rank_of(uvec2 pixel) {
     return (x & 1u) << 3 | (y & 1u) << 2 | (x & 2u) | (y & 2u) >> 1;
 }
 
-// Length of a cone's first sample, in voxels. Dithered: up to a quarter of a step off, so that samples
-// of neighbouring pixels lie at different lengths.
+// Length of a diffuse cone's first sample, in voxels. Dithered: up to a quarter of a step off, so that
+// samples of neighbouring pixels lie at different lengths.
 float gi_first(uvec2 pixel) {
     if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u) return GI_START;
     uint rank = gi_rank_of(pixel);
@@ -98,7 +98,7 @@ GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, vec3 lean, bool i
         // Interpolated normals may mirror the view into the surface.
         mirrored = normalize(mirrored + g.normal * max(-dot(mirrored, g.normal), 0.0) * 2.0);
         GiCone cone =
-            gi_cone(start, mirrored, gi_specular_tan(s), first, shines ? gi_reach() : 0.0);
+            gi_cone(start, mirrored, gi_specular_tan(s), GI_START, shines ? gi_reach() : 0.0);
         vec3 sky = mix(horizon, zenith, sqrt(clamp(mirrored.y, 0.0, 1.0)));
         vec3 light = cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0);
         result.specular = shines ? vec4(light, 1.0) : vec4(0.0);

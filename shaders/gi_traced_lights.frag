@@ -10,7 +10,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     GbufferPixel g = gbuffer_read(pixel);
     // As rays (specification of voxel GI, 4) two voxels out: in a corner the other wall is near.
-    vec3 sum = gi_traced_light(gbuffer_surface(g), gi_start(g), gi_first(uvec2(pixel)) + 1.0,
+    vec3 sum = gi_traced_light(gbuffer_surface(g), gi_start(g), GI_START + 1.0,
                                g.depth > 0.0);
     out_color = vec4(g.depth > 0.0 ? sum * gbuffer_receives(g) : vec3(0.0), 0.0);
 }
