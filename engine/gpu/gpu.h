@@ -351,7 +351,7 @@ void gpu_cmd_clear_texture(GpuCommands *cmd, GpuTexture texture);
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_label_end(GpuCommands *cmd);
 // Timers: pairs of timestamps by name (static storage); results of the newest finished frame.
-#define GPU_TIMERS_CAP 64
+#define GPU_TIMERS_CAP 128
 void gpu_cmd_timer_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_timer_end(GpuCommands *cmd);
 typedef struct GpuTimer { const char *name; f32 ms; } GpuTimer;

@@ -151,7 +151,7 @@ static void compare_forward(Bench *bench) {
 
 static void compare_ways(const char *level, bool thorough) {
     Bench bench;
-    bench_open(&bench, level, 128, 72, settings_default());
+    bench_open(&bench, level, 128, 72, studio_direct_light());
     RenderSettings settings = settings_with(&bench, "forward");
     RenderImage brute = bench_draw(&bench, &settings);
     u64 hash = 0;
@@ -185,7 +185,7 @@ TEST_GPU(golden_lists, without_room_all_lights_and_the_same_bits) {
     for (u32 level = 0; level < COUNT_OF(levels); level++) {
         Bench bench;
         // All lights for all pixels are slow: a small picture.
-        bench_open(&bench, levels[level], level ? 32 : 96, level ? 18 : 54, settings_default());
+        bench_open(&bench, levels[level], level ? 32 : 96, level ? 18 : 54, studio_direct_light());
         Renderer *renderer = bench.studio.renderer;
         u32 light_count = bench.packet->lights.count - 1;
         for (u32 i = 0; i < COUNT_OF(ways); i++) {
@@ -221,7 +221,7 @@ TEST_GPU(golden_lists, without_room_all_lights_and_the_same_bits) {
 // The first frame's lists do not fit into the first buffer; the second one's do.
 TEST_GPU(golden_lists, buffers_grow_by_what_was_wanted) {
     Bench bench;
-    bench_open(&bench, "data/levels/lights_4096.toml", 400, 225, settings_default());
+    bench_open(&bench, "data/levels/lights_4096.toml", 400, 225, studio_direct_light());
     RenderSettings settings = settings_with(&bench, "tiled_deferred,grid=gpu,tile_px=8");
     RenderImage first = bench_draw(&bench, &settings);
     RendererStats stats = renderer_stats(bench.studio.renderer);
@@ -368,7 +368,7 @@ TEST_GPU(golden_lists, no_light_is_missing_from_a_tile) {
                                          "data/levels/lights_4096.toml"};
     for (u32 level = 0; level < COUNT_OF(levels); level++) {
         Bench bench;
-        bench_open(&bench, levels[level], 200, 113, settings_default());
+        bench_open(&bench, levels[level], 200, 113, studio_direct_light());
         u32 off, gpu_minmax, gpu_mask, rect_minmax, rect_mask, small;
         check_tiles(&bench, "tiled_deferred,grid=gpu", &off);
         check_tiles(&bench, "tiled_deferred,grid=gpu,tile_depth=minmax", &gpu_minmax);
@@ -388,7 +388,7 @@ TEST_GPU(golden_lists, no_light_is_missing_from_a_cluster) {
                                          "data/levels/lights_4096.toml"};
     for (u32 level = 0; level < COUNT_OF(levels); level++) {
         Bench bench;
-        bench_open(&bench, levels[level], 200, 113, settings_default());
+        bench_open(&bench, levels[level], 200, 113, studio_direct_light());
         RenderSettings settings = settings_with(&bench, "clustered_deferred,clusters=gpu");
         bench_draw(&bench, &settings);
         bench_draw(&bench, &settings);
@@ -446,7 +446,7 @@ TEST_GPU(golden_lists, no_light_is_missing_from_a_cluster) {
 // shows 1 / (1 + 0.15 d) in 255 steps.
 TEST_GPU(golden_lists, tile_depths_are_those_of_the_picture) {
     Bench bench;
-    bench_open(&bench, "data/levels/cloister.toml", 200, 113, settings_default());
+    bench_open(&bench, "data/levels/cloister.toml", 200, 113, studio_direct_light());
     RenderSettings settings = settings_with(&bench, "view=depth");
     RenderImage picture = bench_draw(&bench, &settings);
     static const char *const ways[] = {"tiled_deferred,tile_depth=mask,tile_px=8",
@@ -523,7 +523,7 @@ TEST_GPU(golden_lists, odd_sizes) {
     for (u32 i = 0; i < COUNT_OF(sizes); i++) {
         Bench bench;
         bench_open(&bench, "data/levels/cornell.toml", sizes[i][0], sizes[i][1],
-                   settings_default());
+                   studio_direct_light());
         draw_ways(&bench);
         bench_close(&bench);
     }
@@ -531,7 +531,7 @@ TEST_GPU(golden_lists, odd_sizes) {
 
 TEST_GPU(golden_lists, no_lights) {
     Bench bench;
-    RenderSettings settings = settings_default();
+    RenderSettings settings = studio_direct_light();
     settings.light_gain = 0.0f;
     bench_open(&bench, "data/levels/plane_test.toml", 64, 36, settings);
     assert_int_equal(bench.packet->lights.count, 1);
@@ -542,7 +542,7 @@ TEST_GPU(golden_lists, no_lights) {
 // More lights than uniform blocks hold, and than a shader's loop may go over 8 times.
 TEST_GPU(golden_lists, nine_thousand_lights) {
     Bench bench;
-    RenderSettings settings = settings_default();
+    RenderSettings settings = studio_direct_light();
     assert_true(settings_set_list(&settings, "manager=off,light_culling=off,light_limit=9000"));
     bench_open(&bench, "data/levels/hall.toml", 48, 27, settings);
     assert_true(bench.packet->lights.count > 9000);
