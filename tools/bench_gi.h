@@ -60,8 +60,9 @@ typedef struct GiVariant {
 
 typedef struct GiBench {
     FrameBench frames;
-    u32 nudged;  // row of the transform that moves, ROW_NONE = nothing static
-    bool is_off; // where it is
+    u32 nudged;   // row of the transform that moves, ROW_NONE = nothing static
+    bool at_rest; // light has gone round when a frame is measured, as where nothing moves
+    bool is_off;  // where it is
 } GiBench;
 
 bool gi_bench_open(GiBench *run, Bench *bench, const GiScene *scene, u32 width_px, u32 height_px,

@@ -363,8 +363,9 @@ static bool claim_presets(Bench *bench, const char *id) {
     bool ok = true;
     for (u32 v = 0; ok && v < 4; v++)
         ok = gi_bench_picture(&run, &variants[v], &bench->arena, &images[v]);
-    // As in play: nothing static moves.
+    // As in play: nothing static moves, and nothing else does in this room.
     run.nudged = ROW_NONE;
+    run.at_rest = true;
     FrameRounds rounds = {5, 15, 60, 0};
     if (bench->quick) rounds = (FrameRounds){2, 3, 10, 0};
     ok = ok && gi_bench_measure(&run, variants, 4, &rounds);

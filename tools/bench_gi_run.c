@@ -145,6 +145,19 @@ static void finish(GiVariant *variant) {
     variant->frame_ms = frame_variant_ms(&variant->frame);
 }
 
+// Draws until no frame lights voxels or traces probes again.
+static bool settle(GiBench *run) {
+    FrameSample sample;
+    RendererStats before, after = renderer_stats(run->frames.bench->headless.renderer);
+    do {
+        before = after;
+        if (!frame_bench_draw(&run->frames, &sample, NULL, NULL)) return false;
+        after = renderer_stats(run->frames.bench->headless.renderer);
+    } while (after.gi_relit != before.gi_relit ||
+             after.gi_probes_traced != before.gi_probes_traced);
+    return true;
+}
+
 bool gi_bench_measure(GiBench *run, GiVariant *variants, u32 count, const FrameRounds *rounds) {
     FrameBench *frames = &run->frames;
     u32 width = frames->view.width_px, height = frames->view.height_px;
@@ -163,6 +176,7 @@ bool gi_bench_measure(GiBench *run, GiVariant *variants, u32 count, const FrameR
             use(run, variant, width, height);
             // What another variant left behind is made anew in a frame of its own.
             if (count > 1) ok = frame_bench_draw(frames, &sample, NULL, NULL);
+            if (ok && run->at_rest) ok = settle(run);
             nudge(run);
             ok = ok && frame_bench_draw(frames, &sample, NULL, NULL);
             if (!ok) break;
