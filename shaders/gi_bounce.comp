@@ -9,8 +9,6 @@
 layout(local_size_x = 64) in;
 
 const uint STEP_FEEDBACK = 1u;
-// A closed room of perfectly white walls would grow ever brighter.
-const float FEEDBACK_ALBEDO = 0.95;
 
 void main() {
     uint slot = gl_GlobalInvocationID.x, count = voxel_count();

@@ -48,8 +48,6 @@ const float PI = 3.14159265358979;
 // what the probes say of light that went round (feedback).
 const uint STEP_KEEP_BASE = 1u, STEP_CLEAR_VISIBILITY = 2u, STEP_STORE_BASE = 3u,
            STEP_ADD_PROBES = 4u;
-// A closed room of perfectly white walls would grow ever brighter.
-const float FEEDBACK_ALBEDO = 0.95;
 
 // Sums; faces shared: `whole` alone. Not an array: the software driver would keep it in memory.
 vec3 whole, light_0, light_1, light_2, light_3, light_4, light_5;

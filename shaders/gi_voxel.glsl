@@ -7,6 +7,9 @@
 const float GI_NORMAL_SHORTEST = 1.0 / 32.0;
 // Faces with this share of the surface and more count in full.
 const float GI_FACE_WHOLE = 1.0 / 16.0;
+// Albedo that counts at most for light that goes round and round: a closed room of perfectly white
+// walls would grow ever brighter.
+const float FEEDBACK_ALBEDO = 0.95;
 
 vec3 position, normal; // world, its middle; normal: unit, or 0 where normals cancel out
 float facet;           // apart: 1 where one surface fills it, facing the normal; 0 at edges and corners

@@ -84,8 +84,9 @@ bool gi_bench_reference(GiBench *run, const TraceOptions *options, Arena *arena,
 f64 gi_pass_ms(FrameTimes *times, const char *passes);
 // Things of this name (blank-separated list) get a voxel mode; returns how many there were.
 u32 gi_make_dynamic(World *world, const char *names);
-// All lights of the level ask the voxels, and are asked on the screen, in this way.
-void gi_set_shadows(World *world, u32 voxel_shadow, u32 screen_shadow, f32 aperture_deg);
+// Lights of the level (suns: directional ones too) ask the voxels, and are asked on the screen, in
+// this way.
+void gi_set_shadows(World *world, bool suns, u32 voxel_shadow, u32 screen_shadow, f32 aperture_deg);
 
 bool bench_gi_v1(Bench *bench, const char *id);
 bool bench_gi_v2(Bench *bench, const char *id);

@@ -67,7 +67,7 @@ static bool reference_of(GiBench *run, const char *experiment, const char *scene
 
 static void prepare_shadows(Session *session, const GiVariant *variant) {
     bool is_map = variant->choice == SCREEN_SHADOW_MAP;
-    gi_set_shadows(session->world, is_map ? 0 : 1 + VOXEL_SHADOW_RAY, variant->choice,
+    gi_set_shadows(session->world, true, is_map ? 0 : 1 + VOXEL_SHADOW_RAY, variant->choice,
                    MAX((f32)variant->aperture_deg, 0.1f));
 }
 
@@ -212,14 +212,9 @@ bool bench_gi_v6(Bench *bench, const char *id) {
 // Lamps cast no shadows, or traced ones (choice 1). The sun keeps its map, which is finer than
 // cones.
 static void prepare_feature(Session *session, const GiVariant *variant) {
-    LightTable *lights = WORLD_TABLE(session->world, Light, light);
-    for (u32 row = 0; row < lights->table.count; row++) {
-        bool traced = variant->choice && lights->kind[row] != LIGHT_DIRECTIONAL;
-        lights->voxel_shadow[row] = traced ? 1 + VOXEL_SHADOW_RAY : 0;
-        lights->screen_shadow[row] = traced ? SCREEN_SHADOW_CONE : SCREEN_SHADOW_MAP;
-        lights->shadow_aperture[row] = 2.0f;
-        table_touch(&lights->table, row);
-    }
+    gi_set_shadows(session->world, true, 0, SCREEN_SHADOW_MAP, 2.0f);
+    if (variant->choice)
+        gi_set_shadows(session->world, false, 1 + VOXEL_SHADOW_RAY, SCREEN_SHADOW_CONE, 2.0f);
 }
 
 // What V8 adds one after the other. Occlusion has no verdict: it darkens direct light as well,

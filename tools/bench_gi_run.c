@@ -54,9 +54,11 @@ u32 gi_make_dynamic(World *world, const char *names) {
     return count;
 }
 
-void gi_set_shadows(World *world, u32 voxel_shadow, u32 screen_shadow, f32 aperture_deg) {
+void gi_set_shadows(World *world, bool suns, u32 voxel_shadow, u32 screen_shadow,
+                    f32 aperture_deg) {
     LightTable *lights = WORLD_TABLE(world, Light, light);
     for (u32 row = 0; row < lights->table.count; row++) {
+        if (!suns && lights->kind[row] == LIGHT_DIRECTIONAL) continue;
         lights->voxel_shadow[row] = voxel_shadow;
         lights->screen_shadow[row] = screen_shadow;
         lights->shadow_aperture[row] = aperture_deg;
