@@ -339,8 +339,10 @@ bool bench_gi_v8(Bench *bench, const char *id) {
 // --- What the engine promises ---
 
 static bool claim_presets(Bench *bench, const char *id) {
-    // Of the program of the source on the machine that the engine is measured on, wall time.
+    // Of the program of the source, its own shaders, on a machine with two cores; wall time. The
+    // same cones are to be drawn in a third of it.
     static const f64 published[] = {451.0, 1190.0};
+    const f64 thesis_share = 1.0 / 3.0;
     static const u32 sizes[2][2] = {{640, 360}, {1280, 720}};
     const GiScene scene = {"cornell", "data/levels/cornell.toml", NULL};
     GiVariant variants[4];
@@ -370,8 +372,10 @@ static bool claim_presets(Bench *bench, const char *id) {
         frame_variant_add(bench, id, &variants[v].frame,
                           variants[v].frame_ms / variants[v % 2].frame_ms, true);
         if (v < 2) {
-            bench_verdict(bench, id, variants[v].frame_ms, BENCH_AT_MOST, published[v], " ms",
-                          "cornell, thesis, 64 voxels a side, %ux%u, frame", size[0], size[1]);
+            bench_verdict(bench, id, variants[v].frame_ms, BENCH_AT_MOST,
+                          published[v] * thesis_share, " ms",
+                          "cornell, thesis, 64 voxels a side, %ux%u, frame; published %g ms",
+                          size[0], size[1], published[v]);
             continue;
         }
         ImageDifference difference =
