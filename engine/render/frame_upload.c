@@ -158,6 +158,10 @@ static bool light_blocks_fill(Renderer *renderer, const Packet *packet) {
     return true;
 }
 
+// Two groups: of everything, and of what shading a mesh may read. In the latter a stand-in takes
+// the place of the targets that meshes are drawn to: nothing samples them there, and the software
+// driver ends the picture's bins each time that textures are bound while one of them is a render
+// target.
 static bool frame_group_update(Renderer *renderer) {
     if (renderer->frame_group_stale) renderer->bindings_version++;
     renderer->frame_group_stale = false;
@@ -165,6 +169,7 @@ static bool frame_group_update(Renderer *renderer) {
         return true;
     Gpu *gpu = renderer->gpu;
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
+    if (renderer->mesh_group.id) gpu_destroy_bind_group(gpu, renderer->mesh_group);
     GpuBindGroupDesc desc = {.label = "frame", .layout = renderer->frame_layout};
     const struct {
         u32 binding;
@@ -239,8 +244,15 @@ static bool frame_group_update(Renderer *renderer) {
         .texture = renderer->overlay_texture.id ? renderer->overlay_texture : renderer->white,
         .sampler = renderer->sampler_linear};
     renderer->frame_group = gpu_create_bind_group(gpu, &desc);
+    for (u32 i = 0; i < COUNT_OF(images); i++)
+        if (images[i].resource != RESOURCE_SHADOW_MAP &&
+            images[i].resource != RESOURCE_HDR_OTHER && // multipass_lights.frag
+            images[i].binding != BINDING_HDR_STORAGE)
+            desc.bindings[images[i].binding].texture = renderer->black;
+    desc.label = "frame for meshes";
+    renderer->mesh_group = gpu_create_bind_group(gpu, &desc);
     renderer->frame_group_version = renderer->bindings_version;
-    return renderer->frame_group.id != 0;
+    return renderer->frame_group.id && renderer->mesh_group.id;
 }
 
 bool frame_upload(Renderer *renderer, const Packet *packet) {
@@ -278,6 +290,7 @@ void frame_sets_exchange(Renderer *renderer) {
 #define FIELD(name)    EXCHANGE(renderer->name, parked->name)
     FIELD(buffers);
     FIELD(frame_group);
+    FIELD(mesh_group);
     FIELD(frame_group_version);
     FIELD(layout);
     FIELD(depth_format);
@@ -312,6 +325,7 @@ static void frame_set_destroy(Renderer *renderer) {
     Gpu *gpu = renderer->gpu;
     gi_state_destroy(renderer);
     if (renderer->frame_group.id) gpu_destroy_bind_group(gpu, renderer->frame_group);
+    if (renderer->mesh_group.id) gpu_destroy_bind_group(gpu, renderer->mesh_group);
     for (u32 i = 0; i < FRAME_BUFFER_COUNT; i++)
         if (renderer->buffers[i].id) gpu_destroy_buffer(gpu, renderer->buffers[i]);
     GpuBuffer others[] = {renderer->text_vertices, renderer->text_indices, renderer->line_vertices};

@@ -14,10 +14,10 @@ void bind_frame(const PassContext *c, GpuPipeline pipeline) {
 
 // Blended surfaces that voxels light need these as well.
 static void bind_draws(const PassContext *c, PipelineKind kind, GpuPipeline pipeline) {
+    gpu_cmd_bind_pipeline(c->cmd, pipeline);
+    gpu_cmd_bind_group(c->cmd, 0, c->renderer->mesh_group);
     if (kind == PIPELINE_GI_FORWARD_BLEND)
-        gi_bind_screen(c, pipeline);
-    else
-        bind_frame(c, pipeline);
+        gpu_cmd_bind_group(c->cmd, 2, c->renderer->gi.screen_group);
 }
 
 // A list has few kinds of pipelines: looked up once each.
@@ -87,6 +87,8 @@ void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection secti
     gpu_cmd_bind_indices(c->cmd, r->indices, false);
     GpuPipeline bound = {0}, cache[VARIANTS] = {{0}};
     u32 bound_material = UINT32_MAX;
+    // Depth alone is the same of every material, but the set must be there.
+    bool one_group = kind == PIPELINE_SHADOW || kind == PIPELINE_PREPASS;
     bool by_vertex =
         c->packet->settings.vertex_lighting && c->packet->frame.vertex_lighting[0] > 0.0f;
     // Warming up, what may be lit by its vertices in another frame is so now.
@@ -104,7 +106,7 @@ void draw_list_with(const PassContext *c, PipelineKind kind, PacketSection secti
             bound = pipeline;
             bound_material = UINT32_MAX;
         }
-        if (draw->material != bound_material) {
+        if (draw->material != bound_material && !(one_group && bound_material != UINT32_MAX)) {
             gpu_cmd_bind_group(c->cmd, 1, render_material_group(r, material));
             bound_material = draw->material;
         }

@@ -309,7 +309,7 @@ typedef struct GiReports {
 // (frame_sets_exchange). All other targets and buffers serve both, one after the other.
 typedef struct FrameSet {
     GpuBuffer buffers[FRAME_BUFFER_COUNT];
-    GpuBindGroup frame_group;
+    GpuBindGroup frame_group, mesh_group;
     u32 frame_group_version;
     u32 layout, gbuffer_width_px, gbuffer_height_px;
     GpuFormat depth_format;
@@ -361,12 +361,12 @@ struct Renderer {
 
     // Per-frame buffers and the group over everything.
     GpuBuffer buffers[FRAME_BUFFER_COUNT];
-    GpuBindGroup frame_group;
-    bool frame_group_stale;  // a bound resource was made anew
-    u32 bindings_version;    // counts how often that was so
-    u32 frame_group_version; // of the bindings in frame_group
-    FrameSet parked;         // of the other packet of a split frame
-    u32 frame_set;           // which is in use: 0, or 1 while the other packet is drawn
+    GpuBindGroup frame_group, mesh_group; // mesh_group: without the targets (frame_upload.c)
+    bool frame_group_stale;               // a bound resource was made anew
+    u32 bindings_version;                 // counts how often that was so
+    u32 frame_group_version;              // of the bindings in both groups
+    FrameSet parked;                      // of the other packet of a split frame
+    u32 frame_set; // which is in use: 0, or 1 while the other packet is drawn
 
     // Level.
     u64 assets_stamp;
