@@ -85,10 +85,21 @@ layout(set = 2, binding = BINDING_GI_ATLAS_NEAREST_MIP) uniform sampler3D gi_atl
 layout(set = 2, binding = BINDING_GI_BRICKS) uniform sampler3D gi_bricks;
 #endif
 
+// --- What loops read of the record ---
+
+// Read before all loops: within one the software driver reads buffers lane by lane; four numbers of a
+// storage buffer take as long there as a filtered texel.
+vec3 gi_dims = vec3(gi.dims.xyz), gi_atlas_half_texel = 0.5 / vec3(gi.atlas.xyz);
+float gi_atlas_last = float(gi.atlas.w) - 1.0; // its coarsest level
+vec4 gi_first_origin = gi.origin[0];
+
+vec4 gi_origin(uint cascade) { return GI_CASCADES == 1u ? gi_first_origin : gi.origin[cascade]; }
+
 // --- World and voxels: the one pair that everybody uses ---
 
 vec3 gi_to_voxels(vec3 world, uint cascade) {
-    return (world - gi.origin[cascade].xyz) / gi.origin[cascade].w;
+    vec4 origin = gi_origin(cascade);
+    return (world - origin.xyz) / origin.w;
 }
 vec3 gi_to_world(vec3 voxels, uint cascade) {
     return voxels * gi.origin[cascade].w + gi.origin[cascade].xyz;
@@ -258,14 +269,17 @@ vec4 gi_atlas_fetch(vec3 p, float level) {
     return gi_atlas_fetch(p, level, GI_MIPS == GI_READ_NEAREST);
 }
 
+// exp2 of a whole number.
+float gi_exp2_whole(float x) { return uintBitsToFloat(uint(x + 127.0) << 23); }
+
 // The atlas at p (in voxels of the cascade), of a level that need not be whole.
 vec4 gi_atlas_sample(vec3 p, uint cascade, float level, GiAxes axes) {
-    level = clamp(level, 0.0, float(gi.atlas.w) - 1.0);
+    level = clamp(level, 0.0, gi_atlas_last);
     if (GI_MIPS == GI_READ_NEAREST) level = floor(level + 0.5);
     // Neighbouring blocks and cascades must not be blended with: half a texel of the coarser level
     // that is read stays between.
-    vec3 half_texel = 0.5 * exp2(ceil(level)) / vec3(gi.atlas.xyz);
-    vec3 q = clamp(p / vec3(gi.dims.xyz), half_texel, 1.0 - half_texel);
+    vec3 half_texel = gi_exp2_whole(ceil(level)) * gi_atlas_half_texel;
+    vec3 q = clamp(p / gi_dims, half_texel, 1.0 - half_texel);
     if (GI_CASCADES > 1u) q.z = (q.z + float(cascade)) / float(GI_CASCADES);
     if (GI_MIPS == GI_READ_THIRDS) q.z *= 0.5;
     vec4 sum;
@@ -310,8 +324,8 @@ vec4 gi_base_fetch(vec3 q) {
     return textureLod(gi_base, texel / vec3(textureSize(gi_base, 0)), 0.0);
 }
 vec4 gi_base_sample(vec3 p, uint cascade) {
-    vec3 half_texel = 0.5 / vec3(gi.dims.xyz);
-    vec3 q = clamp(p / vec3(gi.dims.xyz), half_texel, 1.0 - half_texel);
+    vec3 half_texel = 0.5 / gi_dims;
+    vec3 q = clamp(p / gi_dims, half_texel, 1.0 - half_texel);
     if (GI_CASCADES > 1u) q.z = (q.z + float(cascade)) / float(GI_CASCADES);
     return gi_decode(gi_base_fetch(q));
 }
@@ -335,10 +349,11 @@ vec4 gi_sample(vec3 p, uint cascade, float lod, vec3 direction) {
 uint gi_cascade(vec3 world, float diameter) {
     uint found = GI_CASCADES;
     for (uint i = GI_CASCADES; i-- > 0u;) {
-        vec3 middle = 0.5 * vec3(gi.dims.xyz) * gi.origin[i].w;
-        vec3 room = middle - abs(world - gi.origin[i].xyz - middle);
+        vec4 origin = gi_origin(i);
+        vec3 middle = 0.5 * gi_dims * origin.w;
+        vec3 room = middle - abs(world - origin.xyz - middle);
         // The last one has nothing beyond it: it is read up to its border.
-        float margin = i + 1u < GI_CASCADES ? diameter + gi.origin[i].w : 0.0;
+        float margin = i + 1u < GI_CASCADES ? diameter + origin.w : 0.0;
         if (min(min(room.x, room.y), room.z) >= margin) found = i;
     }
     return found;

@@ -17,9 +17,10 @@ void main() {
     vec3 albedo = voxel_albedo(slot);
     if (GI_STEP == STEP_FEEDBACK) albedo = min(albedo, vec3(FEEDBACK_ALBEDO));
     vec3 sum = vec3(0.0);
-    // Each lane takes its own next face: as many rounds as the richest voxel has faces.
+    // Each lane takes its own next face: as many rounds as the richest voxel has faces. The loop ends
+    // with its test, which saves a round (gi_cones.glsl).
     uint faces = gather_faces(true);
-    while (faces != 0u) {
+    if (faces != 0u) for (;;) {
         uint face = uint(findLSB(faces));
         faces &= faces - 1u;
         vec3 light = albedo * gather(face);
@@ -33,6 +34,7 @@ void main() {
         } else {
             sum += light * (face == GATHER_MEAN ? 1.0 : voxel_face(face));
         }
+        if (faces == 0u) break;
     }
     if (GI_FACES == 0u) {
         vec4 sent = gi_load_radiance(slot, 0u);

@@ -13,8 +13,9 @@
 // narrower than a voxel the base alone (1 read), up to two voxels base and the finest level of the
 // atlas (4 reads of one level each), from there on the atlas (3 reads of two levels, or of one where
 // the lod is whole: see gi_cone_growth; with the usual cones the lods between are made ahead, as
-// levels of their own: GI_READ_THIRDS). What does not
-// change along a cone is made before, and all that steers a loop comes from gi_flow.
+// levels of their own: GI_READ_THIRDS). What does not change along a cone is made before, and all that
+// steers a loop comes from gi_flow. Loops end with their test: one at the head runs the body once more,
+// with all lanes off, and most cones have one sample in each of the first two loops.
 //
 // With faces apart walls hold light back. What is blended must lie within the cone: texels narrower
 // than it, with the usual step factor a fifth of its width (linear filtering reaches 1.5 of them to
@@ -34,6 +35,14 @@ const float GI_CLOSER = 2.0 / 3.0; // on the step factor
 const float GI_FINER = 2.0 / 3.0;  // texels as wide as so many steps
 const float GI_CLOSEST = GI_FACES != 0u ? 1.0 / 3.0 : 0.0; // voxels, a step at least
 
+// What steers cones, read before all loops (why: gi.glsl).
+vec4 gi_outer = gi_flow.origin[max(GI_CASCADES, 1u) - 1u]; // of the coarsest cascade
+vec4 gi_finest = gi_flow.origin[0];
+vec3 gi_outer_extent = vec3(gi_flow.dims.xyz) * gi_outer.w; // m
+vec4 gi_cone_flow = gi_flow.cone;
+float gi_lambda = gi_flow.strength.y;
+vec3 gi_per_voxel = 1.0 / gi_dims;
+
 struct GiCone {
     vec4 light;      // rgb premultiplied radiance, a opacity
     float occlusion; // opacity, what is far counting less: 1 / (1 + lambda t)
@@ -45,21 +54,25 @@ struct GiCone {
     (mix((frame).sky_horizon.rgb, (frame).sky_zenith.rgb, sqrt(clamp((direction).y, 0.0, 1.0))) *  \
      gi.scale.y)
 
+float gi_voxel_of(uint cascade) {
+    return GI_CASCADES == 1u ? gi_finest.w : gi_flow.origin[cascade].w;
+}
+
 // The width that a sample has at least, m: a voxel of its cascade, and towards the border of one
 // that others lie around growing to a voxel of the next: what is read on both sides of the border is
 // then blurred alike.
 float gi_grain(vec3 world, uint cascade) {
-    float voxel = gi_flow.origin[cascade].w;
+    float voxel = gi_voxel_of(cascade);
     if (GI_CASCADES == 1u || cascade + 1u >= GI_CASCADES) return voxel;
-    vec3 middle = 0.5 * vec3(gi.dims.xyz) * voxel;
+    vec3 middle = 0.5 * gi_dims * voxel;
     vec3 from = abs(world - gi.origin[cascade].xyz - middle) / middle; // 1 at the border
     return voxel * (1.0 + clamp(max(max(from.x, from.y), from.z) * 3.0 - 1.6, 0.0, 1.0));
 }
 
 // That of the finest cascade which has room at a place.
 float gi_voxel_at(vec3 world) {
-    if (GI_CASCADES == 1u) return gi_flow.origin[0].w;
-    return gi_grain(world, min(gi_cascade(world, gi_flow.origin[0].w), GI_CASCADES - 1u));
+    if (GI_CASCADES == 1u) return gi_finest.w;
+    return gi_grain(world, min(gi_cascade(world, gi_finest.w), GI_CASCADES - 1u));
 }
 
 // Where cones of a surface start: offset voxels off it; a voxel counts as thick as it is along the
@@ -71,11 +84,9 @@ vec3 gi_start_at(vec3 position, vec3 normal) {
 
 // Length in m at which a ray leaves the box of the coarsest cascade; not positive if it misses it.
 float gi_exit(vec3 start, vec3 direction) {
-    vec4 origin = gi_flow.origin[GI_CASCADES - 1u];
-    vec3 extent = vec3(gi_flow.dims.xyz) * origin.w;
     vec3 safe = mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
-    vec3 inverse = 1.0 / safe, to_low = (origin.xyz - start) * inverse;
-    vec3 to_high = to_low + extent * inverse;
+    vec3 inverse = 1.0 / safe, to_low = (gi_outer.xyz - start) * inverse;
+    vec3 to_high = to_low + gi_outer_extent * inverse;
     vec3 near = min(to_low, to_high), far = max(to_low, to_high);
     float enter = max(max(near.x, near.y), near.z), leave = min(min(far.x, far.y), far.z);
     return enter < leave && enter <= 0.0 ? leave : 0.0;
@@ -83,7 +94,7 @@ float gi_exit(vec3 start, vec3 direction) {
 
 // Length of a step over the width there (but at least GI_CLOSEST).
 float gi_cone_factor() {
-    return GI_FACES != 0u ? gi_flow.cone.y * GI_CLOSER : gi_flow.cone.y;
+    return GI_FACES != 0u ? gi_cone_flow.y * GI_CLOSER : gi_cone_flow.y;
 }
 // Lod of a sample of this diameter (voxels, at least 1).
 float gi_cone_lod(float diameter) {
@@ -112,10 +123,9 @@ void gi_cone_end(inout GiCone cone) {
 // is read lies between two.
 vec4 gi_cone_atlas(vec3 q, float level, float layer, bool is_whole, GiAxes axes) {
     if (GI_DIRECTIONS == 1u) return gi_atlas_fetch(q, level, is_whole);
-    float texel = 0.5 * uintBitsToFloat(uint(ceil(level) + 127.0) << 23);
-    float half_texel = texel / float(gi.atlas.x);
+    float texels = gi_exp2_whole(ceil(level)), half_texel = texels * gi_atlas_half_texel.x;
     if (GI_MIPS == GI_READ_THIRDS) {
-        float edge = texel / float(gi.atlas.z);
+        float edge = texels * gi_atlas_half_texel.z;
         q.z = clamp(q.z, edge, 1.0 - edge) * 0.5 + layer;
     }
     vec3 x = (axes.block + clamp(q.x, half_texel, 1.0 - half_texel)) * (1.0 / 6.0);
@@ -140,26 +150,31 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
     bool is_nearest = GI_MIPS == GI_READ_NEAREST, is_whole = is_nearest || has_thirds;
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
-    float voxel = gi_flow.origin[0].w, width = 2.0 * tan_half;
+    float voxel = gi_finest.w, width = 2.0 * tan_half;
     float factor = gi_cone_factor();
-    float lambda = gi_flow.strength.y * voxel, last_level = float(gi.atlas.w) - 1.0;
-    vec3 per_voxel = 1.0 / vec3(gi.dims.xyz);
-    vec3 q = gi_to_voxels(start, 0u) * per_voxel, dq = direction * per_voxel;
+    float lambda = gi_lambda * voxel, last_level = gi_atlas_last;
+    vec3 q = (start - gi_finest.xyz) / voxel * gi_per_voxel, dq = direction * gi_per_voxel;
     if (GI_FACES == 0u) {
         float growth = gi_cone_growth(width * factor), rise = log2(growth);
         float narrow_end = min(end, 1.001 / width), near_end = min(end, 1.999 / width);
-        for (; t < narrow_end && cone.light.a < GI_OPAQUE;) {
+        bool goes_on = t < narrow_end;
+        if (goes_on) for (;;) {
             gi_cone_add(cone, gi_base_fetch(q + dq * t), 1.0 / (1.0 + lambda * t));
             t = width * t > 0.999 ? t * growth : t + factor;
+            if (t >= narrow_end || cone.light.a >= GI_OPAQUE) break;
         }
-        for (; t < near_end && cone.light.a < GI_OPAQUE; t *= growth) {
+        goes_on = t < near_end && cone.light.a < GI_OPAQUE;
+        if (goes_on) for (;;) {
             vec3 at = q + dq * t;
             float share = log2(max(width * t, 1.0));
             if (GI_MIPS == GI_READ_NEAREST) share = floor(share + 0.5);
             vec4 s = mix(gi_base_fetch(at), gi_cone_atlas(at, 0.0, 0.0, true, axes), share);
             gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
+            t *= growth;
+            if (t >= near_end || cone.light.a >= GI_OPAQUE) break;
         }
-        for (float lod = log2(width * t) - 1.0; t < end && cone.light.a < GI_OPAQUE; lod += rise) {
+        goes_on = t < end && cone.light.a < GI_OPAQUE;
+        if (goes_on) for (float lod = log2(width * t) - 1.0;; lod += rise) {
             float whole = floor(lod + (has_thirds ? 0.1 : 0.5)), layer = 0.0;
             float level = is_whole || abs(lod - whole) < 0.01 ? whole : lod;
             if (has_thirds) layer = lod - whole > 0.1 && whole < last_level ? 0.5 : 0.0;
@@ -167,17 +182,19 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
             gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, layer, is_whole, axes),
                         1.0 / (1.0 + lambda * t));
             t *= growth;
+            if (t >= end || cone.light.a >= GI_OPAQUE) break;
         }
         gi_cone_end(cone);
         return cone;
     }
-    while (t < end && cone.light.a < GI_OPAQUE) {
+    if (t < end) for (;;) {
         float diameter = max(width * t, 1.0);
         float level = min(gi_cone_lod(diameter) - gi_atlas_lod(), last_level);
         if (GI_MIPS == GI_READ_NEAREST) level = floor(level + 0.5);
         gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, 0.0, is_nearest, axes),
                     1.0 / (1.0 + lambda * t));
         t += max(diameter * factor, GI_CLOSEST);
+        if (t >= end || cone.light.a >= GI_OPAQUE) break;
     }
     gi_cone_end(cone);
     return cone;
@@ -191,11 +208,11 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
     float width = 2.0 * tan_half, factor = gi_cone_factor();
-    float lambda = gi_flow.strength.y;
-    while (t < end && cone.light.a < GI_OPAQUE) {
+    float lambda = gi_lambda;
+    if (t < end) for (;;) {
         vec3 at = start + direction * t;
         uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
-        float voxel = gi_flow.origin[cascade].w;
+        float voxel = gi_voxel_of(cascade);
         float diameter = max(width * t, gi_grain(at, cascade));
         vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
                            axes);
@@ -203,6 +220,7 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
         if (fades) s *= clamp((end - t) / step, 0.0, 1.0);
         gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
         t += step;
+        if (t >= end || cone.light.a >= GI_OPAQUE) break;
     }
     float whole = cone.light.a > GI_OPAQUE ? 1.0 / cone.light.a : 1.0;
     cone.light *= whole;
@@ -218,7 +236,7 @@ GiCone gi_cone(vec3 start, vec3 direction, float tan_half, float first, float re
         // Lanes that a fragment shader runs beside its pixels read 0 from storage buffers on the
         // software driver. They must trace nothing: steps of no length would not end before the
         // driver's limit of iterations does, which the pixels beside them share.
-        float voxel = max(gi_flow.origin[0].w, 1e-9);
+        float voxel = max(gi_finest.w, 1e-9);
         return gi_cone_single(start, direction, tan_half, first, end / voxel, has_thirds);
     }
     return gi_cone_cascades(start, direction, tan_half, first * gi_voxel_at(start), end, false);
@@ -235,7 +253,7 @@ float gi_shadow_cone(vec3 start, vec3 direction, float tan_half, float first, fl
 }
 
 // The level's longest distance, m.
-float gi_reach() { return gi_flow.cone.z > 0.0 ? gi_flow.cone.z : 1e9; }
+float gi_reach() { return gi_cone_flow.z > 0.0 ? gi_cone_flow.z : 1e9; }
 
 // Six cones over the hemisphere about a normal: one along it, five 60 degrees away and 72 degrees
 // apart; shares 1/4 and five of 3/20 (cosine weights: pi/4 and 3 pi/20 over pi).
@@ -257,9 +275,9 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec3 lean, float first, floa
     u *= inversesqrt(max(dot(u, u), 1e-12));
     vec3 v = cross(normal, u);
     vec2 turn = vec2(1.0, 0.0);
-    float tan_half = gi_flow.cone.x;
+    float tan_half = gi_cone_flow.x;
     if (GI_FACES == 0u) first *= gi_cone_first(tan_half);
-    for (uint i = 0u; i < count; i++) {
+    if (count > 0u) for (uint i = 0u;;) {
         bool is_first = i == 0u;
         vec3 around = u * turn.x + v * turn.y;
         vec3 direction = is_first ? normal : normal * 0.5 + around * 0.866025404;
@@ -276,6 +294,7 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec3 lean, float first, floa
         sum.light += (cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0)) * share;
         sum.visibility -= cone.occlusion * share;
         sum.steps += cone.steps;
+        if (++i >= count) break;
     }
     sum.visibility = clamp(sum.visibility, 0.0, 1.0);
     return sum;

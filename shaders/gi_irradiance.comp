@@ -17,12 +17,13 @@ void main() {
     vec3 sum = vec3(0.0);
     float weight = 0.0;
     uint faces = gather_faces(true);
-    while (faces != 0u) {
+    if (faces != 0u) for (;;) { // ends with its test, which saves a round (gi_cones.glsl)
         uint face = uint(findLSB(faces));
         faces &= faces - 1u;
         float share = face == GATHER_MEAN ? 1.0 : voxel_face(face);
         sum += gather(face) * share;
         weight += share;
+        if (faces == 0u) break;
     }
     uvec3 place = gi_unpack_place(gi_voxels[slot]);
     imageStore(gi_irradiance_storage, ivec3(place), vec4(sum / max(weight, 1e-6), 1.0));

@@ -104,7 +104,7 @@ void main() {
     vec3 light[6] = vec3[](vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0));
     float open[6] = float[](0, 0, 0, 0, 0, 0);
     float reach = gi_reach(), tan_half = gi_flow.cone.x;
-    for (uint i = 0u; i < 12u; i++) {
+    for (uint i = 0u;;) { // ends with its test, which saves a round (gi_cones.glsl)
         vec3 direction = CORNERS[i];
         GiCone cone = gi_cone(world, direction, tan_half, PROBE_START, reach);
         vec3 arrives = cone.light.rgb + GI_SKY(frame, direction) * max(1.0 - cone.light.a, 0.0);
@@ -113,6 +113,7 @@ void main() {
             light[d] += arrives * share;
             open[d] += (1.0 - cone.occlusion) * share;
         }
+        if (++i >= 12u) break;
     }
 
     for (uint axis = 0u; axis < 3u; axis++) {

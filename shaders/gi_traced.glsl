@@ -23,7 +23,8 @@ float volume_visibility(vec3 position) {
 vec3 gi_traced_light(Surface s, vec3 start, float first, bool is_on) {
     float by_volume = (GI_TRACED & TRACED_BY_VOLUME) != 0u ? volume_visibility(s.position) : 1.0;
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < gi_flow.counts.x; i++) {
+    uint count = gi_flow.counts.x;
+    if (count > 0u) for (uint i = 0u;;) { // ends with its test, which saves a round (gi_cones.glsl)
         GiLightRecord light = gi_traced[i].light;
         vec4 shadow = gi_traced[i].shadow;
         uint kind = uint(light.extra.y);
@@ -45,6 +46,7 @@ vec3 gi_traced_light(Surface s, vec3 start, float first, bool is_on) {
             visibility = by_cone ? clamp(1.0 - opacity * shadow.y, 0.0, 1.0) : visibility;
         }
         sum += light.color.rgb * brdf(s, a.l, a.n_dot_l, light.color.w) * (a.falloff * visibility);
+        if (++i >= count) break;
     }
     return sum;
 }
