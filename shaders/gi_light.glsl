@@ -2,7 +2,10 @@
 // sum over lights of colour * falloff * cosine * visibility. One invocation a slot; a subgroup takes
 // the cells of the light grid that its slots lie in one after the other, so that each light is
 // loaded once for all of them. A voxel's sum runs over its cell's list in order, whatever the size
-// of a subgroup, and lights out of reach add 0: the same bits as with all lights in one list.
+// of a subgroup, and lights out of reach add 0: the same bits as with all lights in one list. Loops
+// end with their test: of one that begins with it the software driver runs the body once more, with
+// nobody in it. Such a test must be the same for all lanes: what is computed in the body of a lane
+// that has left goes on changing.
 //
 // Cosine, by faces. Face f sees max(+-l_axis, 0). shared: `average` takes the mean normal N instead,
 // `weighted` the faces on N's side, each counted with N_axis^2; where normals cancel out (thin
@@ -101,44 +104,35 @@ void add_local(GiLightRecord a) {
     voxel_add(a.color.rgb * falloff, l, facing);
 }
 
-// Lights [first, first + count) of the lists, the same for all lanes; for those lanes whose turn it
-// is. Each lane loads one, and a shuffle tells the others: of the index, if the lights fit into the
-// uniform block (a read at an address that is the same for all lanes is cheap there), else of all.
-void add_list(uint first, uint count, bool is_mine) {
-    for (uint b = 0u; b < count; b += gl_SubgroupSize) {
-        uint own_index = gi_lists[first + min(b + gl_SubgroupInvocationID, count - 1u)];
-        GiLightRecord own;
-        if (!IN_BLOCK) own = gi_lights[own_index];
-        uint end = min(gl_SubgroupSize, count - b);
-        for (uint j = 0u; j < end; j++) {
+// Lights [at, end) of the lists, the same for all lanes; for those lanes whose turn it is. An index
+// that the compiler knows to be the same for all lanes makes the reads scalar ones; of the uniform
+// block, if the lights fit into it, they are cheapest.
+void add_list(uint at, uint end, bool is_mine) {
+    if (at < end)
+        do {
+            uint index = subgroupBroadcastFirst(gi_lists[subgroupBroadcastFirst(at)]);
             GiLightRecord a;
-            if (IN_BLOCK) {
-                a = gi_light_block[subgroupShuffle(own_index, j)];
-            } else {
-                a.position = subgroupShuffle(own.position, j);
-                a.color = subgroupShuffle(own.color, j);
-                if (HAS_SPOTS) {
-                    a.direction = subgroupShuffle(own.direction, j);
-                    a.extra.xy = subgroupShuffle(own.extra.xy, j);
-                }
-            }
+            if (IN_BLOCK)
+                a = gi_light_block[index];
+            else
+                a = gi_lights[index];
             // Out of reach of everybody else.
             a.position.w = is_mine ? a.position.w : 1e30;
             add_local(a);
-        }
-    }
+        } while (++at < end);
 }
 
 void add_locals() {
     vec3 cell = (position - gi.light_grid_origin.xyz) * gi.light_grid_rate.xyz;
     uvec3 at = uvec3(clamp(cell, vec3(0.0), vec3(gi.light_grid.xyz) - 1.0));
     uint index = at.x + gi.light_grid.x * (at.y + gi.light_grid.y * at.z);
-    uint next = subgroupMin(index);
-    while (next != 0xffffffffu) {
-        uint count = gi_lists[2u * next + 1u];
-        add_list(gi_lists[2u * next], count, index == next);
-        next = subgroupMin(index > next ? index : 0xffffffffu);
-    }
+    uint next = subgroupBroadcastFirst(subgroupMin(index));
+    do {
+        uint first = subgroupBroadcastFirst(gi_lists[2u * next]);
+        uint count = subgroupBroadcastFirst(gi_lists[2u * next + 1u]);
+        add_list(first, first + count, index == next);
+        next = subgroupBroadcastFirst(subgroupMin(index > next ? index : 0xffffffffu));
+    } while (next != 0xffffffffu);
 }
 
 // The shadow map tells about a point half a voxel off the surface; voxels that it does not cover
@@ -155,7 +149,9 @@ float map_visibility() {
 void add_directionals() {
     bool has_map = SHADOW != 0u && (GI_VISIBILITY & 1u << SHADOW_MAP) != 0u;
     float mapped = has_map ? map_visibility() : 1.0;
-    for (uint i = 0u; i < DIRECTIONAL_COUNT; i++) {
+    if (DIRECTIONAL_COUNT == 0u) return;
+    uint i = 0u;
+    do {
         vec4 direction = gi_directionals[i].direction, color = gi_directionals[i].color;
         float facing = direction.w < 0.0 ? 0.0 : cosine(direction.xyz);
         uint way = uint(max(direction.w, 0.0));
@@ -165,7 +161,7 @@ void add_directionals() {
         asked += by_map && facing > 0.0 ? 1.0 : 0.0;
         seen += by_map && facing > 0.0 ? mapped : 0.0;
         voxel_add(direction.w < 0.0 ? vec3(0.0) : color.rgb * visible, direction.xyz, facing);
-    }
+    } while (++i < DIRECTIONAL_COUNT);
 }
 
 // --- Light that went round ---
@@ -177,7 +173,8 @@ void add_probes(uint slot) {
     vec3 share = PI * min(vec3(1.0), FEEDBACK_ALBEDO / max(albedo, vec3(1e-3)));
     bool by_mean = GI_FACES == 0u && normal != vec3(0.0);
     vec3 on = by_mean ? ahead + behind : ahead;
-    for (uint side = 0u; side < (by_mean ? 1u : 2u); side++) {
+    uint side = 0u, sides = subgroupAny(!by_mean) ? 2u : 1u;
+    do {
         vec3 facing = by_mean ? normal : side == 0u ? on : -on;
         facing *= inversesqrt(max(dot(facing, facing), 1e-12));
         uint count = on != vec3(0.0) ? 4u : 0u;
@@ -193,8 +190,8 @@ void add_probes(uint slot) {
             light_4 += side == 0u ? z : vec3(0.0);
             light_5 += side == 1u ? z : vec3(0.0);
         }
-        on = behind;
-    }
+        on = by_mean ? vec3(0.0) : behind;
+    } while (++side < sides);
 }
 
 // --- The result ---

@@ -47,29 +47,31 @@ GiProbeLight gi_probe_axes(vec3 world, vec3 normal, uint count, bool is_layer) {
                   int(gi.probes.x);
     GiProbeLight sum = GiProbeLight(vec4(0.0), vec4(0.0), vec4(0.0));
     float sum_weight = 0.0;
-    for (uint i = 0u; i < count; i++) {
-        uvec3 corner = uvec3(i & 1u, i >> 1 & 1u, i >> 2);
-        if (is_layer) corner = mix(uvec3(i & 1u, main.x ? i & 1u : i >> 1, i >> 1), uvec3(0), main);
-        vec3 near = mix(1.0 - share, share, vec3(corner));
-        ivec3 probe = ivec3(low) + ivec3(corner);
-        vec3 way = place - vec3(probe); // from the probe to the surface
-        vec4 x = texelFetch(gi_probes, ivec3(probe.x + block.x, probe.yz), 0);
-        vec4 y = texelFetch(gi_probes, ivec3(probe.x + block.y, probe.yz), 0);
-        vec4 z = texelFetch(gi_probes, ivec3(probe.x + block.z, probe.yz), 0);
-        GiProbeCode cx = gi_probe_decode(x.a), cy = gi_probe_decode(y.a),
-                    cz = gi_probe_decode(z.a);
-        vec3 free = vec3(way.x > 0.0 ? cx.up : cx.down, way.y > 0.0 ? cy.up : cy.down,
-                         way.z > 0.0 ? cz.up : cz.down);
-        free += mix(slack, vec3(0.0), equal(free, vec3(0.0))); // 0: behind is wall
-        vec3 seen = clamp((free - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
-        float before = clamp(-dot(way, normal) * 8.0 + 0.25, 1e-4, 1.0);
-        float valid = cx.up + cx.down > 0.0 ? 1.0 : 1e-6;
-        float w = near.x * near.y * near.z * before * valid * (seen.x * seen.y * seen.z) + 1e-20;
-        sum.x += vec4(x.rgb, cx.open) * w;
-        sum.y += vec4(y.rgb, cy.open) * w;
-        sum.z += vec4(z.rgb, cz.open) * w;
-        sum_weight += w;
-    }
+    uint i = 0u;
+    if (count > 0u)
+        do {
+            uvec3 corner = uvec3(i & 1u, i >> 1 & 1u, i >> 2);
+            if (is_layer) corner = mix(uvec3(i & 1u, main.x ? i & 1u : i >> 1, i >> 1), uvec3(0), main);
+            vec3 near = mix(1.0 - share, share, vec3(corner));
+            ivec3 probe = ivec3(low) + ivec3(corner);
+            vec3 way = place - vec3(probe); // from the probe to the surface
+            vec4 x = texelFetch(gi_probes, ivec3(probe.x + block.x, probe.yz), 0);
+            vec4 y = texelFetch(gi_probes, ivec3(probe.x + block.y, probe.yz), 0);
+            vec4 z = texelFetch(gi_probes, ivec3(probe.x + block.z, probe.yz), 0);
+            GiProbeCode cx = gi_probe_decode(x.a), cy = gi_probe_decode(y.a),
+                        cz = gi_probe_decode(z.a);
+            vec3 free = vec3(way.x > 0.0 ? cx.up : cx.down, way.y > 0.0 ? cy.up : cy.down,
+                             way.z > 0.0 ? cz.up : cz.down);
+            free += mix(slack, vec3(0.0), equal(free, vec3(0.0))); // 0: behind is wall
+            vec3 seen = clamp((free - abs(way)) * 8.0 + 1.0, vec3(1e-3), vec3(1.0));
+            float before = clamp(-dot(way, normal) * 8.0 + 0.25, 1e-4, 1.0);
+            float valid = cx.up + cx.down > 0.0 ? 1.0 : 1e-6;
+            float w = near.x * near.y * near.z * before * valid * (seen.x * seen.y * seen.z) + 1e-20;
+            sum.x += vec4(x.rgb, cx.open) * w;
+            sum.y += vec4(y.rgb, cy.open) * w;
+            sum.z += vec4(z.rgb, cz.open) * w;
+            sum_weight += w;
+        } while (++i < count);
     float scale = 1.0 / max(sum_weight, 1e-20);
     return GiProbeLight(sum.x * scale, sum.y * scale, sum.z * scale);
 }

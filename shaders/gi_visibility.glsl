@@ -46,7 +46,8 @@ float gi_ray(vec3 start, uint cascade, vec3 l, float reach, bool soft, bool want
     vec3 slope = max(abs(l), vec3(1e-6)); // voxels of each axis that a voxel's length crosses
     bvec3 up = greaterThanEqual(l, vec3(0.0));
     float first = GI_RAY_FIRST * gi.origin[cascade].w; // m along the ray that are done
-    for (uint coarser = 0u; coarser < GI_CASCADES; coarser++) {
+    uint coarser = 0u;
+    do {
         uint c = min(cascade + coarser, GI_CASCADES - 1u);
         float voxel = gi.origin[c].w;
         vec3 from = (start - gi.origin[c].xyz) / voxel;
@@ -60,34 +61,35 @@ float gi_ray(vec3 start, uint cascade, vec3 l, float reach, bool soft, bool want
         uvec3 place = uvec3(ivec3(p));
         uvec3 stride = mix(uvec3(0xffffffffu), uvec3(1u), up);
         uint spent = gi_ray_spent;
-        while (t < last && spent < GI_RAY_BUDGET &&
-               all(lessThan(place, gi_flow.dims.xyz))) {
-            spent++;
-            for (uint i = 0u; i < steps; i++) {
-                bool is_inside = t < last && all(lessThan(place, gi.dims.xyz));
-                uvec3 held = min(place, gi.dims.xyz - 1u);
-                held.z += gi.dims.z * c;
-                float taken = all_at_once ? 1.0 : min(soft_hit / max(t, 1.0), 1.0);
-                bool met = is_inside && gi_ray_meets(gi_bit(held)) != 0u;
-                seen *= met ? 1.0 - taken : 1.0;
-                // On through the nearest border; outside it stays where it is.
-                float next = min(leave.x, min(leave.y, leave.z));
-                bool by_x = leave.x <= next, by_y = !by_x && leave.y <= next;
-                bvec3 crossed = bvec3(is_inside && by_x, is_inside && by_y,
-                                      is_inside && !by_x && !by_y);
-                place += mix(uvec3(0u), stride, crossed);
-                leave += mix(vec3(0.0), every, crossed);
-                t = is_inside ? next : t;
-            }
-            if (seen < GI_RAY_DARK) {
-                seen = 0.0;
-                break;
-            }
-        }
+        bool goes_on = t < last && spent < GI_RAY_BUDGET && all(lessThan(place, gi_flow.dims.xyz));
+        // All lanes stay until the last one is through: those that are take nothing in.
+        if (subgroupAny(goes_on))
+            do {
+                spent++;
+                for (uint i = 0u; i < steps; i++) {
+                    bool is_inside = t < last && all(lessThan(place, gi.dims.xyz));
+                    uvec3 held = min(place, gi.dims.xyz - 1u);
+                    held.z += gi.dims.z * c;
+                    float taken = all_at_once ? 1.0 : min(soft_hit / max(t, 1.0), 1.0);
+                    bool met = is_inside && gi_ray_meets(gi_bit(held)) != 0u;
+                    seen *= met ? 1.0 - taken : 1.0;
+                    // On through the nearest border; outside it stays where it is.
+                    float next = min(leave.x, min(leave.y, leave.z));
+                    bool by_x = leave.x <= next, by_y = !by_x && leave.y <= next;
+                    bvec3 crossed = bvec3(is_inside && by_x, is_inside && by_y,
+                                          is_inside && !by_x && !by_y);
+                    place += mix(uvec3(0u), stride, crossed);
+                    leave += mix(vec3(0.0), every, crossed);
+                    t = is_inside ? next : t;
+                }
+                seen = seen < GI_RAY_DARK ? 0.0 : seen;
+                goes_on = seen > 0.0 && t < last && spent < GI_RAY_BUDGET &&
+                          all(lessThan(place, gi_flow.dims.xyz));
+            } while (subgroupAny(goes_on));
         gi_ray_spent = subgroupMax(spent);
         // Borders of nested grids coincide: a hair beyond.
         first = max(first, t * voxel + 1e-3 * voxel);
-    }
+    } while (++coarser < GI_CASCADES);
     return seen;
 }
 #endif

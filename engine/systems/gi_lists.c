@@ -3,15 +3,20 @@
 // for each the lights that touch it, ascending. Called by: packet_build. Does not: look at the
 // view: voxels outside it are lit as well.
 //
-// Cells are 4 to 16 voxels wide. Two passes over all lights, for each layer of cells by itself:
-// count, then fill; so the result does not depend on the number of threads. A ball's cells are
-// found row by row, exactly; those of a cone are tested besides, each by the ball around it.
+// Cells are 4 to 16 voxels wide, or one is all: few lights that reach most of the box would be
+// gone through again for each cell that neighbouring voxels lie in. Two passes over all lights, for
+// each layer of cells by itself: count, then fill; so the result does not depend on the number of
+// threads. A ball's cells are found row by row, exactly; those of a cone are tested besides, each
+// by the ball around it.
 #include "gi.h"
 #include "../base/jobs.h"
 #include <string.h>
 
 #define CELL_VOXELS    4
 #define LAYERS_PER_JOB 4
+// Of so few lights lists that hold a third of all on average are not worth having.
+#define LIGHTS_FEW 64
+#define DENSE_PART 3
 // Cells are this part of their side larger than they are: positions in shaders are rounded.
 #define CELL_SLACK  (1.0f / 64.0f)
 #define REACH_SLACK 1e-5f
@@ -131,12 +136,13 @@ static u64 count_words(ListJob *job, ListShape *shapes, const GiLightRecord *lig
     return words;
 }
 
-static void shape_cells(ListJob *job, const GiRecord *record, u32 halvings) {
+// divisor: how much wider cells are than they could be.
+static void shape_cells(ListJob *job, const GiRecord *record, u32 divisor) {
     const f32 *coarsest = record->origin[record->dims[3] - 1];
     f32 radius2 = 0.0f;
     for (u32 a = 0; a < 3; a++) {
         u32 cells = MIN(MAX(record->dims[a] / CELL_VOXELS, 1), GI_LIST_CELLS_CAP);
-        job->cells[a] = MAX(cells >> halvings, 1);
+        job->cells[a] = MAX(cells / divisor, 1);
         job->origin[a] = coarsest[a];
         job->side[a] = (f32)record->dims[a] * coarsest[3] / (f32)job->cells[a];
         f32 half = job->side[a] * (0.5f + CELL_SLACK);
@@ -153,14 +159,19 @@ GiLists gi_lists_make(GiRecord *record, const GiLightRecord *lights, u32 light_c
     ListJob job = {.shapes = shapes, .shape_count = light_count};
     job.counts =
         ARENA_PUSH(scratch, u32, GI_LIST_CELLS_CAP * GI_LIST_CELLS_CAP * GI_LIST_CELLS_CAP);
-    u64 words = 0;
-    // A single cell holds at most all lights, and there are fewer of them than words.
-    for (u32 halvings = 0; halvings == 0 || words > GI_LISTS_CAP; halvings++) {
-        shape_cells(&job, record, halvings);
-        words = count_words(&job, shapes, lights, light_count);
-    }
-
+    shape_cells(&job, record, 1);
+    u64 words = count_words(&job, shapes, lights, light_count);
     u32 cell_count = job.cells[0] * job.cells[1] * job.cells[2];
+    bool is_dense = light_count <= LIGHTS_FEW &&
+                    (words - 2ull * cell_count) * DENSE_PART >= (u64)light_count * cell_count;
+    // A single cell holds at most all lights, and there are fewer of them than words.
+    for (u32 wider = is_dense ? GI_LIST_CELLS_CAP : 2; is_dense || words > GI_LISTS_CAP;
+         wider *= 2) {
+        is_dense = false;
+        shape_cells(&job, record, wider);
+        words = count_words(&job, shapes, lights, light_count);
+        cell_count = job.cells[0] * job.cells[1] * job.cells[2];
+    }
     GiLists lists = {.count = (u32)words, .index_count = (u32)words - 2 * cell_count};
     lists.words = ARENA_PUSH(scratch, u32, lists.count);
     u32 cursor = 2 * cell_count;
