@@ -43,16 +43,17 @@ vec4 common_specular(uint material) {
 }
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
-// position, normal: world. Targets beyond the layout's are left 0.
-void gbuffer_write(vec3 position, vec3 normal, vec3 albedo, uint material, out vec4 t[5]) {
+// position: world; direction: along the normal, of any length. Targets beyond the layout's are left 0.
+void gbuffer_write(vec3 position, vec3 direction, vec3 albedo, uint material, out vec4 t[5]) {
     for (uint i = 0u; i < 5u; i++) t[i] = vec4(0.0);
     vec3 eye = position - frame.camera.xyz;
     vec4 indexed = vec4(albedo, float(material) / 255.0);
     if (LAYOUT == GBUFFER_LAYOUT_LEAN) {
         t[0] = indexed;
-        t[1].xy = oct_encode(normal) * 0.5 + 0.5;
+        t[1].xy = oct_encode(direction) * 0.5 + 0.5; // the length cancels
         return;
     }
+    vec3 normal = direction * inversesqrt(max(dot(direction, direction), 1e-20));
     if (LAYOUT == GBUFFER_LAYOUT_WIDE) {
         t[0] = vec4(position, 1.0);
         t[1] = vec4(normal, 0.0);
