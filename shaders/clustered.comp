@@ -5,6 +5,7 @@
 // Pixels of a subgroup may lie in several clusters: these take turns, so that light indices are
 // uniform; all lanes go along, and those of other clusters keep their sum.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "subgroups.glsl"
 #include "gbuffer.glsl"
 #include "cells.glsl"
@@ -14,6 +15,7 @@ layout(set = 0, binding = BINDING_HDR_STORAGE, rgba16f) writeonly uniform image2
 
 // Of the cell's list, or of all lights in order.
 uint list_entry(bool all, uint at) { return all ? at : cell_index(at); }
+const uint SURFACES = 1u;
 #include "list_shade.glsl"
 
 const uint NO_CELL = 0xFFFFFFFFu;
@@ -43,13 +45,15 @@ void main() {
         list = CLUSTERED == 2u ? cell_list(CLUSTER_ALL) : cell_list_all();
     }
 
+    Surfaces surfaces;
+    surfaces.at[0] = s;
     vec3 sum = vec3(0.0);
     for (uvec4 open = subgroupBallot(lit); subgroupBallotBitCount(open) > 0u;) {
         uint leader = subgroupBallotFindLSB(open);
         uvec4 turn_list = subgroupShuffle(list, leader);
         bool turn = cell == subgroupShuffle(cell, leader);
-        vec3 turn_sum = shade_list(s, in_order, turn_list.x, cell_classes(turn_list));
-        sum = turn ? turn_sum : sum;
+        Sums turn_sum = shade_list(surfaces, in_order, turn_list.x, cell_classes(turn_list));
+        sum = turn ? turn_sum.at[0] : sum;
         open &= ~subgroupBallot(turn);
     }
     vec3 radiance = gbuffer_radiance(g, s, sum);

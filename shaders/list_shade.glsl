@@ -5,12 +5,33 @@
 // software driver: 25 instructions a float, where a shuffle is one.
 // Loops end with their test: on the software driver, one that begins with it runs its body once more
 // with all lanes off. There an empty list costs as much as one light, as branches skip nothing.
-// The includer says what a list's entry is: uint list_entry(bool other, uint at).
+// A lane shades several surfaces by each light: what fetching it and the loop cost is paid once, and
+// long chains of arithmetic go side by side.
+// The includer says how many surfaces (SURFACES, a constant) and what a list's entry is: uint
+// list_entry(bool other, uint at).
 #ifndef LIST_SHADE_GLSL
 #define LIST_SHADE_GLSL
 
-// Adds points [first, last) to the sum; highlight: a constant.
-vec3 shade_points(vec3 sum, Surface s, bool other, uint first, uint last, bool highlight) {
+// The surfaces that a lane shades at once, and what they got.
+const uint SURFACES_CAP = 8u;
+struct Surfaces {
+    Surface at[SURFACES_CAP];
+};
+struct Sums {
+    vec3 at[SURFACES_CAP];
+};
+Sums sums_zero() {
+    Sums zero;
+    [[unroll]] for (uint i = 0u; i < SURFACES; i++) zero.at[i] = vec3(0.0);
+    return zero;
+}
+Sums sums_add(Sums a, Sums b) {
+    [[unroll]] for (uint i = 0u; i < SURFACES; i++) a.at[i] += b.at[i];
+    return a;
+}
+
+// Adds points [first, last) to the sums; highlight: a constant.
+Sums shade_points(Sums sum, Surfaces s, bool other, uint first, uint last, bool highlight) {
     if (first >= last) return sum;
     for (uint b = first;;) {
         uint mine = list_entry(other, min(b + gl_SubgroupInvocationID, last - 1u));
@@ -19,8 +40,9 @@ vec3 shade_points(vec3 sum, Surface s, bool other, uint first, uint last, bool h
         for (uint j = 0u;;) {
             vec4 position = subgroupShuffle(own_position, j);
             vec4 color = subgroupShuffle(own_color, j);
-            sum += highlight ? light_point(s, position, color)
-                             : light_point_diffuse(s, position, color);
+            [[unroll]] for (uint i = 0u; i < SURFACES; i++)
+                sum.at[i] += highlight ? light_point(s.at[i], position, color)
+                                       : light_point_diffuse(s.at[i], position, color);
             if (++j >= end) break;
         }
         b += gl_SubgroupSize;
@@ -29,7 +51,7 @@ vec3 shade_points(vec3 sum, Surface s, bool other, uint first, uint last, bool h
     return sum;
 }
 
-vec3 shade_spots(vec3 sum, Surface s, bool other, uint first, uint last, bool highlight) {
+Sums shade_spots(Sums sum, Surfaces s, bool other, uint first, uint last, bool highlight) {
     uint point_count = flow.counts.x;
     if (first >= last) return sum;
     for (uint b = first;;) {
@@ -43,8 +65,10 @@ vec3 shade_spots(vec3 sum, Surface s, bool other, uint first, uint last, bool hi
             vec4 color = subgroupShuffle(own_color, j);
             vec4 direction = subgroupShuffle(own_direction, j);
             float edge = subgroupShuffle(own_edge, j);
-            sum += highlight ? light_spot(s, position, color, direction, edge)
-                             : light_spot_diffuse(s, position, color, direction, edge);
+            [[unroll]] for (uint i = 0u; i < SURFACES; i++)
+                sum.at[i] += highlight
+                                 ? light_spot(s.at[i], position, color, direction, edge)
+                                 : light_spot_diffuse(s.at[i], position, color, direction, edge);
             if (++j >= end) break;
         }
         b += gl_SubgroupSize;
@@ -53,21 +77,22 @@ vec3 shade_spots(vec3 sum, Surface s, bool other, uint first, uint last, bool hi
     return sum;
 }
 
-// The sum over a list whose classes (points, diffuse points, spots, diffuse spots) end where `ends`
+// The sums over a list whose classes (points, diffuse points, spots, diffuse spots) end where `ends`
 // says, by half the code: for lists that are seldom shaded or have no diffuse lights, whose factor
 // on the highlight is 0.
-vec3 shade_list_merged(Surface s, bool other, uint first, uvec4 ends) {
-    vec3 sum = shade_points(vec3(0.0), s, other, first, ends.y, true);
-    return SPOTS == 0u ? sum : sum + shade_spots(vec3(0.0), s, other, ends.y, ends.w, true);
+Sums shade_list_merged(Surfaces s, bool other, uint first, uvec4 ends) {
+    Sums sum = shade_points(sums_zero(), s, other, first, ends.y, true);
+    if (SPOTS == 0u) return sum;
+    return sums_add(sum, shade_spots(sums_zero(), s, other, ends.y, ends.w, true));
 }
 
-// The same sum to the bit.
-vec3 shade_list(Surface s, bool other, uint first, uvec4 ends) {
+// The same sums to the bit.
+Sums shade_list(Surfaces s, bool other, uint first, uvec4 ends) {
     if ((LIST_KINDS & LIST_KIND_DIFFUSE) == 0u) return shade_list_merged(s, other, first, ends);
-    vec3 sum = shade_points(vec3(0.0), s, other, first, ends.x, true);
+    Sums sum = shade_points(sums_zero(), s, other, first, ends.x, true);
     sum = shade_points(sum, s, other, ends.x, ends.y, false);
     if (SPOTS == 0u) return sum;
-    vec3 spots = shade_spots(vec3(0.0), s, other, ends.y, ends.z, true);
-    return sum + shade_spots(spots, s, other, ends.z, ends.w, false);
+    Sums spots = shade_spots(sums_zero(), s, other, ends.y, ends.z, true);
+    return sums_add(sum, shade_spots(spots, s, other, ends.z, ends.w, false));
 }
 #endif

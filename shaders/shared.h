@@ -147,7 +147,7 @@ typedef struct MeshVertex {
 #define SPEC_TONEMAP       8 // 1 = Reinhard, 0 = clamp
 #define SPEC_DIRECTIONALS  9 // how many directional lights: of the screen; voxels: all of them
 #define SPEC_LIGHT_BLOCKS  10 // 1 = the uniform blocks hold all lights, 0 = too many: use storage
-#define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades in turn (1..8)
+#define SPEC_PIXELS_PER_LANE 11 // tiled: pixels that an invocation shades side by side (1..8)
 #define SPEC_TILED_GROUP   12 // tiled: invocations of a group, 64 / pixels per lane
 #define SPEC_TEXTURES      13 // geometry: bit 0 has an albedo texture, bit 1 a normal map
 #define SPEC_EXACT_POWER   14 // 1 = pow() for highlights, 0 = the cheap one

@@ -546,21 +546,15 @@ static GpuPipeline pipeline_create(Renderer *renderer, const PipelineKey *key) {
     return gpu_create_pipeline(renderer->gpu, &desc);
 }
 
-// The software driver stops a shader silently after 65,535 loop iterations in all (nested ones
-// counted together): a tile with very many lights must not be shaded by 8 rounds of one invocation.
-#define LOOP_ITERATIONS_SAFE 60000
-
 // Lights of the longest list. Of lists made on the device it is not known here: at most all.
 static u64 longest_list(const Packet *packet) {
     return device_lists_used(&packet->settings) ? packet->lights.count
                                                 : packet->counts.cell_light_max;
 }
 
-static u32 tiled_pixels_per_lane(const Renderer *renderer, const Packet *packet) {
-    u32 pixels = CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
-    u64 longest = longest_list(packet);
-    while (pixels > 1 && longest * pixels * 5 / 4 > LOOP_ITERATIONS_SAFE) pixels /= 2;
-    return pixels;
+// Of the 8 x 8 that a subgroup's cull is for.
+static u32 tiled_pixels_per_lane(const Renderer *renderer) {
+    return CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
 }
 
 // LIST_KIND_* of a packet; `wanted` beside those. Only the tiled path cares about long lists.
@@ -577,7 +571,7 @@ static u32 list_kinds(const Packet *packet, PipelineKind kind, u32 wanted) {
 
 GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind kind,
                          PipelineVariant variant) {
-    u32 pixels_per_lane = tiled_pixels_per_lane(renderer, packet);
+    u32 pixels_per_lane = tiled_pixels_per_lane(renderer);
     const RenderSettings *settings = &packet->settings;
     const GiParams *gi = &packet->gi.params;
     bool is_ms = rows[kind].may_be_ms && renderer->samples > 1;
