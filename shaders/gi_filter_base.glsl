@@ -3,8 +3,9 @@
 //   0  one invocation a word of the masks: voxels whose light is in the images but which are there no
 //      more, and the texels above them, become 0; layer GI_MASK_LIT then says what is there now.
 //   1  (faces apart) one invocation a slot: its faces go to level 0 of the atlas.
-//   2  one invocation a slot: the first occupied voxel of each eight makes the texel over them, from
-//      the base volume to level 0 of the atlas or (faces apart) from its level 0 to level 1.
+//   2  a group for GI_PARENT_CHUNKS rows of 32 x 2 x 2 voxels: each eight voxels with one that is
+//      occupied make the texel over them, from the base volume to level 0 of the atlas or (faces apart) from its
+//      level 0 to level 1.
 // Included by gi_filter_base.comp and gi_filter_base_byte.comp.
 #define GI_BUILD
 #include "gi_filter.glsl"
@@ -68,20 +69,47 @@ void scatter(uint slot) {
 
 // --- Step 2 ---
 
-// Is this the first occupied voxel of its eight? Rows of x lie together: of each pair of bits the
-// even one comes first.
-bool is_first(uvec3 place) {
-    uvec3 corner = place & ~1u;
-    uint earlier = 0u;
-    for (uint i = 0u; i < 8u; i++) {
-        uvec3 other = corner + uvec3(i & 1u, i >> 1 & 1u, i >> 2);
-        uint own = (place.x & 1u) | (place.y & 1u) << 1 | (place.z & 1u) << 2;
-        uint bit = gi_bit(other);
-        uint occupied = (gi_masks[gi_mask_word(GI_MASK_STATIC, bit)] |
-                         gi_masks[gi_mask_word(GI_MASK_DYNAMIC, bit)]) >> (bit & 31u) & 1u;
-        earlier |= i < own ? occupied : 0u;
+// Eight voxels have one parent. A group goes through a stretch of them, lists those with anything
+// occupied below, and its lanes share what is on the list: the software driver runs for all lanes what
+// one of them needs. The order of the list does not matter.
+const uint PARENTS_LISTED = GI_PARENT_CHUNKS * 16u;
+shared uint parent_count;
+shared uint parents[PARENTS_LISTED]; // x, y, z: 8, 8 and 16 bits
+
+// Occupied voxels of a chunk: up to 32 in a row.
+uint chunk_row(uvec3 place, uint width) {
+    uint bit = gi_bit(place);
+    uint word = gi_masks[gi_mask_word(GI_MASK_STATIC, bit)] |
+                gi_masks[gi_mask_word(GI_MASK_DYNAMIC, bit)];
+    return word >> (bit & 31u) & (0xffffffffu >> (32u - width));
+}
+
+void list_parents() {
+    uvec4 dims = gi_flow.dims;
+    uint width = min(dims.x, 32u), across = dims.x / width;
+    uint chunks = across * (dims.y >> 1) * (dims.z * dims.w >> 1);
+    if (gl_LocalInvocationIndex == 0u) parent_count = 0u;
+    barrier();
+    for (uint k = 0u; k < GI_PARENT_CHUNKS / 64u; k++) {
+        uint chunk = gl_WorkGroupID.x * GI_PARENT_CHUNKS + k * 64u + gl_LocalInvocationIndex;
+        uint row = chunk / across, slice = row / (dims.y >> 1);
+        uvec3 place = uvec3((chunk - row * across) * width, (row - slice * (dims.y >> 1)) * 2u,
+                            slice * 2u);
+        uint found = 0u;
+        if (chunk < chunks)
+            found = chunk_row(place, width) | chunk_row(place + uvec3(0u, 1u, 0u), width) |
+                    chunk_row(place + uvec3(0u, 0u, 1u), width) |
+                    chunk_row(place + uvec3(0u, 1u, 1u), width);
+        found = (found | found >> 1) & 0x55555555u;
+        uint at = atomicAdd(parent_count, uint(bitCount(found)));
+        if (found != 0u) for (;;) {
+            uint x = place.x + uint(findLSB(found));
+            parents[at++] = x >> 1 | place.y << 7 | place.z << 15;
+            found &= found - 1u;
+            if (found == 0u) break;
+        }
     }
-    return earlier == 0u;
+    barrier();
 }
 
 // Written out for each direction, so that what is composited is known to the compiler.
@@ -95,8 +123,8 @@ bool is_first(uvec3 place) {
     }
 ivec3 child(ivec3 corner, int i) { return corner + ivec3(i & 1, i >> 1 & 1, i >> 2); }
 
-void make_parent(uvec3 place) {
-    ivec3 corner = ivec3(place & ~1u), parent = corner >> 1;
+void make_parent(ivec3 parent) {
+    ivec3 corner = parent * 2;
     vec4 c[8];
     ivec3 first = gi_base_texel(corner); // all eight lie in one brick
     if (GI_FACES == 0u)
@@ -115,15 +143,19 @@ void main() {
         forget_word();
         return;
     }
+    if (GI_STEP == 2u) {
+        list_parents();
+        uint i = gl_LocalInvocationIndex, end = parent_count;
+        if (i < end) for (;;) {
+            uint packed = parents[i];
+            make_parent(ivec3(packed & 255u, packed >> 8 & 255u, packed >> 16));
+            i += 64u;
+            if (i >= end) break;
+        }
+        return;
+    }
     uint slot = gl_GlobalInvocationID.x;
     uint count = min(gi_counters[GI_COUNTER_STATIC] + gi_counters[GI_COUNTER_DYNAMIC],
                      gi_flow.counts.z);
-    if (slot >= count) return;
-    if (GI_STEP == 1u) {
-        scatter(slot);
-    } else {
-        uvec3 place = gi_unpack_place(gi_voxels[slot]);
-        if (!is_first(place)) return;
-        make_parent(place);
-    }
+    if (slot < count) scatter(slot);
 }

@@ -48,6 +48,5 @@ void main() {
     uint slot = first + draw.how.y + place;
     bool is_there = place < GI_WINDOW_SLOTS && draw.how.y + place < count &&
                     slot < gi_flow.counts.z;
-    // A loop, because that is what the software driver skips.
-    for (uint times = is_there ? 1u : 0u; times > 0u; times--) resolve(place, slot, layer);
+    if (is_there) resolve(place, slot, layer);
 }

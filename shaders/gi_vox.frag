@@ -16,15 +16,19 @@ layout(location = 8) flat in vec2 in_uv2;
 
 void main() {
     VoxTriangle t = vox_triangle(VoxCorners(in_a, in_b, in_c, in_slack));
-    VoxSurface s =
-        VoxSurface(in_instance, in_normals, in_colors, in_uv01.xy, in_uv01.zw, in_uv2);
+    VoxSurface s;
+    if (vox_needs_surface())
+        s = vox_surface(VoxCodes(in_normals, in_colors, in_uv01.xy, in_uv01.zw, in_uv2),
+                        in_instance);
     ivec2 column = ivec2(gl_FragCoord.xy);
     bool is_inside = all(greaterThanEqual(column, t.low.xy)) &&
                      all(lessThanEqual(column, t.high.xy));
     ivec2 range = vox_column(t, column);
     int last = is_inside ? range.y : range.x - 1;
-    for (int z = range.x; z <= last; z++) {
+    int z = range.x;
+    if (z <= last) for (;;) { // tested at the end: see gi_vox.comp
         ivec3 v = ivec3(column, z);
         if (vox_touches(t, v)) vox_emit(t, s, v);
+        if (++z > last) break;
     }
 }

@@ -232,29 +232,36 @@ ivec2 vox_column(VoxTriangle t, ivec2 column) {
 
 // --- What falls into a voxel ---
 
-// Of the three corners, as far as they are needed.
-struct VoxSurface {
-    uint instance;
-    uvec3 normals; // MeshVertex.normal
-    uvec3 colors;
+// Of the three corners.
+struct VoxCodes {
+    uvec3 normals, colors; // as MeshVertex has them
     vec2 uv0, uv1, uv2;
+};
+VoxCodes vox_codes(uvec3 vertices) {
+    VoxCodes c;
+    c.normals = uvec3(gi_vertices[vertices.x + 3u], gi_vertices[vertices.y + 3u],
+                      gi_vertices[vertices.z + 3u]);
+    c.colors = uvec3(gi_vertices[vertices.x + 7u], gi_vertices[vertices.y + 7u],
+                     gi_vertices[vertices.z + 7u]);
+    c.uv0 = uintBitsToFloat(uvec2(gi_vertices[vertices.x + 4u], gi_vertices[vertices.x + 5u]));
+    c.uv1 = uintBitsToFloat(uvec2(gi_vertices[vertices.y + 4u], gi_vertices[vertices.y + 5u]));
+    c.uv2 = uintBitsToFloat(uvec2(gi_vertices[vertices.z + 4u], gi_vertices[vertices.z + 5u]));
+    return c;
+}
+
+// What a fragment takes from its triangle, as far as it is needed. All that is read is read before
+// loops over voxels: within them the software driver reads buffers lane by lane.
+struct VoxSurface {
+    vec3 n0, n1, n2; // unit normals of the corners
+    vec3 yz, zx, xy; // the instance's cofactors, which turn normals
+    vec4 c0, c1, c2; // colours
+    vec2 uv0, uv1, uv2;
+    vec4 factor; // MaterialRecord.albedo
+    vec3 emissive, glow;
 };
 
 // Does a fragment need its surface? Marking does only for holes in masked materials.
 bool vox_needs_surface() { return GI_STEP != 0u || ALPHA_MASK != 0u; }
-
-VoxSurface vox_surface(uvec3 vertices, uint instance) {
-    VoxSurface s;
-    s.instance = instance;
-    s.normals = uvec3(gi_vertices[vertices.x + 3u], gi_vertices[vertices.y + 3u],
-                      gi_vertices[vertices.z + 3u]);
-    s.colors = uvec3(gi_vertices[vertices.x + 7u], gi_vertices[vertices.y + 7u],
-                     gi_vertices[vertices.z + 7u]);
-    s.uv0 = uintBitsToFloat(uvec2(gi_vertices[vertices.x + 4u], gi_vertices[vertices.x + 5u]));
-    s.uv1 = uintBitsToFloat(uvec2(gi_vertices[vertices.y + 4u], gi_vertices[vertices.y + 5u]));
-    s.uv2 = uintBitsToFloat(uvec2(gi_vertices[vertices.z + 4u], gi_vertices[vertices.z + 5u]));
-    return s;
-}
 
 // Weights of the corners at the triangle's point nearest to the voxel's centre: barycentric
 // coordinates of the centre's foot, cut to the triangle.
@@ -308,15 +315,32 @@ vec3 vox_mix(vec3 a, vec3 b, vec3 c, vec3 w) {
 
 // World normal at the point, turned by the cofactors as those of the picture are (mesh.glsl).
 vec3 vox_normal(VoxSurface s, vec3 w) {
-    vec3 n = vox_mix(vox_normalize(vox_oct_decode(s.normals.x)),
-                     vox_normalize(vox_oct_decode(s.normals.y)),
-                     vox_normalize(vox_oct_decode(s.normals.z)), w);
-    vec3 x = gi_instances[s.instance].world[0].xyz, y = gi_instances[s.instance].world[1].xyz,
-         z = gi_instances[s.instance].world[2].xyz;
-    vec3 yz = vox_across(z, y), zx = vox_across(x, z), xy = vox_across(y, x);
-    return vox_normalize(vec3(vox_along(yz, n), vox_along(zx, n), vox_along(xy, n)));
+    vec3 n = vox_mix(s.n0, s.n1, s.n2, w);
+    return vox_normalize(vec3(vox_along(s.yz, n), vox_along(s.zx, n), vox_along(s.xy, n)));
 }
 
+VoxSurface vox_surface(VoxCodes codes, uint instance) {
+    VoxSurface s;
+    s.n0 = vox_normalize(vox_oct_decode(codes.normals.x));
+    s.n1 = vox_normalize(vox_oct_decode(codes.normals.y));
+    s.n2 = vox_normalize(vox_oct_decode(codes.normals.z));
+    vec3 x = gi_instances[instance].world[0].xyz, y = gi_instances[instance].world[1].xyz,
+         z = gi_instances[instance].world[2].xyz;
+    s.yz = vox_across(z, y);
+    s.zx = vox_across(x, z);
+    s.xy = vox_across(y, x);
+    s.c0 = unpackUnorm4x8(codes.colors.x);
+    s.c1 = unpackUnorm4x8(codes.colors.y);
+    s.c2 = unpackUnorm4x8(codes.colors.z);
+    s.uv0 = codes.uv0;
+    s.uv1 = codes.uv1;
+    s.uv2 = codes.uv2;
+    uint material = gi_instances[instance].ids.x;
+    s.factor = gi_materials[material].albedo;
+    s.emissive = (TEXTURES & 8u) != 0u ? gi_materials[material].emissive.rgb : vec3(0.0);
+    s.glow = (TEXTURES & 4u) != 0u ? gi_materials[material].extra.yzw : vec3(0.0);
+    return s;
+}
 layout(set = 1, binding = BINDING_ALBEDO_TEXTURE) uniform sampler2D albedo_texture;
 layout(set = 1, binding = BINDING_EMISSIVE_TEXTURE) uniform sampler2D emissive_texture;
 
@@ -347,27 +371,22 @@ struct VoxFragment {
 VoxFragment vox_fragment(VoxTriangle t, VoxSurface s, ivec3 v) {
     VoxFragment f;
     vec3 w = vox_weights(t, v);
-    uint material = gi_instances[s.instance].ids.x;
     vec2 uv = vox_uv(s, w);
     vec4 texel = vec4(1.0);
     if ((TEXTURES & 1u) != 0u)
         texel = textureLod(albedo_texture, uv, vox_level(t, s, textureSize(albedo_texture, 0)));
-    vec4 c0 = unpackUnorm4x8(s.colors.x), c1 = unpackUnorm4x8(s.colors.y),
-         c2 = unpackUnorm4x8(s.colors.z);
-    precise vec3 color = vox_mix(c0.rgb, c1.rgb, c2.rgb, w);
-    precise float alpha = texel.a * vox_mix(c0.aaa, c1.aaa, c2.aaa, w).x;
-    vec4 factor = gi_materials[material].albedo;
-    f.is_there = ALPHA_MASK == 0u || alpha >= factor.w;
-    precise vec3 albedo = texel.rgb * factor.rgb;
+    precise vec3 color = vox_mix(s.c0.rgb, s.c1.rgb, s.c2.rgb, w);
+    precise float alpha = texel.a * vox_mix(s.c0.aaa, s.c1.aaa, s.c2.aaa, w).x;
+    f.is_there = ALPHA_MASK == 0u || alpha >= s.factor.w;
+    precise vec3 albedo = texel.rgb * s.factor.rgb;
     albedo = albedo * color;
     f.albedo = albedo;
     f.normal = vox_normal(s, w);
     precise vec3 emission = vec3(0.0);
-    if ((TEXTURES & 8u) != 0u) emission = gi_materials[material].emissive.rgb;
+    if ((TEXTURES & 8u) != 0u) emission = s.emissive;
     if ((TEXTURES & 4u) != 0u) {
         float level = vox_level(t, s, textureSize(emissive_texture, 0));
-        precise vec3 glow = textureLod(emissive_texture, uv, level).rgb *
-                            gi_materials[material].extra.yzw;
+        precise vec3 glow = textureLod(emissive_texture, uv, level).rgb * s.glow;
         emission = emission + glow;
     }
     f.emission = emission;

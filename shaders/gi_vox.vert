@@ -41,7 +41,7 @@ void main() {
     out_uv01 = vec4(0.0);
     out_uv2 = vec2(0.0);
     if (vox_needs_surface()) {
-        VoxSurface s = vox_surface(vertices, instance);
+        VoxCodes s = vox_codes(vertices);
         out_normals = s.normals;
         out_colors = s.colors;
         out_uv01 = vec4(s.uv0, s.uv1);

@@ -315,6 +315,7 @@ typedef struct MeshVertex {
 #define GI_SUM_WORDS         19
 #define GI_RANK_WORDS        4    // words of the masks that share a rank
 #define GI_RANK_BLOCK        2048 // words of the masks that a group counts
+#define GI_PARENT_CHUNKS     128  // rows of 32 x 2 x 2 voxels that a group of the filter goes through
 // BUILD_COUNTERS goes on behind its counters: set bits of each block of words.
 #define GI_COUNTER_BLOCKS    GI_COUNTER_COUNT
 // GiDrawRecord.how.x

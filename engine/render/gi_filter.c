@@ -53,18 +53,23 @@ static void images_barrier(const PassContext *c) {
     gi_barrier(c, (RenderResource[]){RESOURCE_GI_BASE, RESOURCE_GI_ATLAS, RESOURCE_GI_MASKS}, 3);
 }
 
-static void by_slot(const PassContext *c, u32 step, u32 level) {
-    gi_bind_build(c, base_pipeline(c, step), level);
-    gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
-    images_barrier(c);
+u32 gi_parent_groups(const u32 dims[4]) {
+    u64 row = MIN(dims[0], 32) * 4ull, voxels = (u64)dims[0] * dims[1] * dims[2] * dims[3];
+    return (u32)((voxels / row + GI_PARENT_CHUNKS - 1) / GI_PARENT_CHUNKS);
 }
 
 static void levels_record(const PassContext *c) {
     const GiRecord *record = &c->packet->gi.record;
     u32 blocks = c->packet->gi.params.filter == GI_FILTER_ISOTROPIC ? 1 : 6;
     u32 cascades = record->dims[3], first = parent_level(c);
-    if (first > 0) by_slot(c, STEP_SCATTER, 0);
-    by_slot(c, STEP_PARENTS, first);
+    if (first > 0) {
+        gi_bind_build(c, base_pipeline(c, STEP_SCATTER), 0);
+        gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
+        images_barrier(c);
+    }
+    gi_bind_build(c, base_pipeline(c, STEP_PARENTS), first);
+    gpu_cmd_dispatch(c->cmd, gi_parent_groups(record->dims), 1, 1);
+    images_barrier(c);
     GpuPipeline mip = pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_MIP, PIPELINE_PLAIN);
     for (u32 level = first + 1; level < record->atlas[3]; level++) {
         u32 x = (record->atlas[0] >> level) * blocks, y = record->atlas[1] >> level;

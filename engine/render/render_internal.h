@@ -475,6 +475,8 @@ void gi_brick_shape(u32 bricks, u32 out[4]); // width, height, depth, mips
 u64 gi_accumulator_bytes(u64 voxels, u32 slots, bool solid);
 u32 gi_rank_blocks(u64 voxels);
 u32 gi_sum_bits(u64 triangles);
+// gi_filter.c: groups that make the texels over all voxels.
+u32 gi_parent_groups(const u32 dims[4]);
 // gi_meshes.c: see GpuMesh.
 f32 mesh_longest_edge(const Mesh *mesh);
 bool mesh_is_closed(const Mesh *mesh);

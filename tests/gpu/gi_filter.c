@@ -5,6 +5,7 @@
 #include "gi_filter_twin.h"
 #include "gpu_fixture.h"
 #include "../../engine/base/random.h"
+#include "../../engine/render/render_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,6 +230,8 @@ static void filter_run(Filter *f) {
         gpu_cmd_bind_group(cmd, 0, d.groups[step == 1 ? 0 : first]);
         if (step == 0)
             gpu_cmd_dispatch(cmd, (f->voxels / 32 + 63) / 64, 1, 1);
+        else if (step == 2)
+            gpu_cmd_dispatch(cmd, gi_parent_groups(f->gi.dims), 1, 1);
         else
             gpu_cmd_dispatch_indirect(cmd, d.counters, GI_COUNTER_ALL_ARGS * sizeof(u32));
         gpu_cmd_barriers(cmd, IMAGES(GPU_USAGE_STORAGE_COMPUTE, GPU_USAGE_STORAGE_COMPUTE), 3);
