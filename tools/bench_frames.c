@@ -75,6 +75,7 @@ static void use_variant(FrameBench *run, const FrameVariant *variant, u32 width,
     run->view.settings = variant->settings;
     run->view.width_px = variant->width_px ? variant->width_px : width;
     run->view.height_px = variant->height_px ? variant->height_px : height;
+    frame_times_begin(&variant->times, run->bench->headless.gpu);
 }
 
 bool frame_bench_picture(FrameBench *run, const FrameVariant *variant, Arena *arena,

@@ -126,6 +126,7 @@ static void use(GiBench *run, const GiVariant *variant, u32 width, u32 height) {
     view->width_px = variant->frame.width_px ? variant->frame.width_px : width;
     view->height_px = variant->frame.height_px ? variant->frame.height_px : height;
     if (variant->prepare) variant->prepare(&run->frames.session, variant);
+    frame_times_begin(&variant->frame.times, run->frames.bench->headless.gpu);
 }
 
 static void add_sample(GiBench *run, GiVariant *variant, const FrameSample *sample) {

@@ -14,6 +14,7 @@ Gpu *headless_gpu(const ToolCommon *common) {
                                      .device = common->device,
                                      .validation = common->validation,
                                      .accurate_timers = true});
+    if (gpu) gpu_timers_enable(gpu, false); // but for frames that are measured
     // The engine takes the best device instead; who names one to a tool wants that one.
     if (!gpu || !common->device || strcasestr(gpu_info(gpu)->device_name, common->device))
         return gpu;
@@ -144,6 +145,10 @@ void json_samples(Json *json, const char *key, Samples *samples) {
     json_f64(json, "min", samples_percentile(samples, 0.0));
     json_f64(json, "max", samples_percentile(samples, 1.0));
     json_close(json);
+}
+
+void frame_times_begin(const FrameTimes *times, Gpu *gpu) {
+    gpu_timers_enable(gpu, times->frame_ms.count % 3 == 0);
 }
 
 void frame_times_add_passes(FrameTimes *times, const Gpu *gpu) {

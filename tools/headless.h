@@ -58,6 +58,10 @@ typedef struct FrameTimes {
     } passes[GPU_TIMERS_CAP];
     u32 pass_count;
 } FrameTimes;
+// Before a frame is drawn: whether it has timers. One in three has, the first among them: medians
+// of frame times are of frames as a player sees them, without.
+void frame_times_begin(const FrameTimes *times, Gpu *gpu);
+// After it. A frame without timers adds nothing.
 void frame_times_add_passes(FrameTimes *times, const Gpu *gpu);
 void frame_times_free(FrameTimes *times);
 #endif

@@ -140,6 +140,7 @@ static bool time_frames(Shot *shot) {
     u32 count = WARM_UP_FRAMES + shot->options.frame_count;
     Progress progress = progress_begin("frames", count, shot->common.quiet);
     for (u32 i = 0; i < count; i++) {
+        frame_times_begin(&shot->times, shot->headless.gpu);
         f64 wall = clock_now_ms(), cpu = clock_process_cpu_ms();
         const Packet *packet = next_packet(shot);
         if (!renderer_render_image(shot->headless.renderer, packet, NULL, NULL)) return false;

@@ -324,6 +324,8 @@ static bool draw(Window *window) {
     const Overlay *overlay =
         window->ui_ready ? debug_ui_frame(window->ui, app, width, height, pointer) : NULL;
     f64 wait_start = clock_now_ms();
+    // Who reads them: the panel, and the controller of the scale.
+    gpu_timers_enable(gpu, app->panel || app->settings.target_ms > 0.0f);
     GpuCommands *cmd = gpu_frame_begin(gpu);
     if (!cmd) return false;
     bool shown = gpu_swapchain_acquire(gpu, cmd);

@@ -300,6 +300,7 @@ Gpu *gpu_create(const GpuDesc *desc) {
     if (!gpu) return NULL;
     snprintf(gpu->label, sizeof gpu->label, "%s", desc->label);
     gpu->accurate_timers = desc->accurate_timers;
+    gpu->has_timers = true;
     gpu->create_surface = desc->create_surface;
     gpu->window = desc->window;
     gpu->buffers = (GpuPool){.what = "buffer", .item_size = sizeof(GpuBufferItem)};

@@ -350,8 +350,12 @@ void gpu_cmd_clear_texture(GpuCommands *cmd, GpuTexture texture);
 
 void gpu_cmd_label_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_label_end(GpuCommands *cmd);
-// Timers: pairs of timestamps by name (static storage); results of the newest finished frame.
+// Timers: pairs of timestamps by name (static storage); results of the newest finished frame, none
+// if it had no timers. A timer begins where the last one ended, if no other began between.
 #define GPU_TIMERS_CAP 128
+// Whether frames that begin from now on have timers (they do until told otherwise). They cost: on
+// the software driver a third of a frame's switches between its threads.
+void gpu_timers_enable(Gpu *gpu, bool on);
 void gpu_cmd_timer_begin(GpuCommands *cmd, const char *name);
 void gpu_cmd_timer_end(GpuCommands *cmd);
 typedef struct GpuTimer { const char *name; f32 ms; } GpuTimer;

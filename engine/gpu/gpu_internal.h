@@ -167,14 +167,20 @@ struct GpuCommands {
     GpuBoundGroup bound[2][GPU_GROUPS_CAP]; // graphics, compute
     bool is_rendering;
 };
+typedef struct GpuTimerQueries {
+    const char *name;
+    u32 begin, end;
+} GpuTimerQueries;
 typedef struct GpuFrameSlot {
     VkCommandPool pool;
     VkCommandBuffer buffer;
     u64 value; // timeline value that ends this slot's newest frame
     VkSemaphore acquired;
     VkQueryPool queries;
-    const char *timer_names[GPU_TIMERS_CAP];
-    u32 timer_count;
+    GpuTimerQueries timers[GPU_TIMERS_CAP];
+    u32 timer_count, query_count;
+    u32 last_end;      // query at which a timer ended, and none began since
+    bool timers_taken; // this slot's newest frame's results
 } GpuFrameSlot;
 typedef struct GpuUploadSlot {
     VkCommandPool pool;
@@ -207,6 +213,7 @@ struct Gpu {
     struct VolkDeviceTable
         vk; // of this device; 1.2 devices have the KHR functions under the core names
     bool has_debug_utils, is_vulkan_12, is_lost, accurate_timers;
+    bool has_timers, writes_timers; // as asked for; in this frame
     u32 validation_count;
     VkPhysicalDeviceMemoryProperties memory_properties;
     VkPhysicalDeviceLimits limits;

@@ -234,6 +234,15 @@ TEST_GPU(gpu, timers_are_named_and_plausible) {
             assert_true(timers[0].ms >= timers[1].ms);
         }
         assert_int_equal(gpu_timers(gpu, timers, 2), 2);
+        // While nobody asks there are none, and old ones are not told again.
+        for (u32 frame = 0; frame < 2; frame++) {
+            gpu_timers_enable(gpu, frame == 1);
+            GpuCommands *cmd = gpu_frame_begin(gpu);
+            gpu_cmd_timer_begin(cmd, "asked for");
+            gpu_cmd_timer_end(cmd);
+            assert_true(gpu_frame_end(gpu, true));
+            assert_int_equal(gpu_timers(gpu, timers, GPU_TIMERS_CAP), frame);
+        }
         gpu_destroy_bind_group(gpu, group);
         gpu_destroy_pipeline(gpu, pipeline);
         gpu_destroy_buffer(gpu, in);
