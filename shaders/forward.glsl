@@ -62,7 +62,7 @@ vec3 voxel_light(Surface s, vec3 albedo) {
     vec3 arriving = vec3(0.0);
     if (GI_DIFFUSE == 2u) arriving = gi_probe_light(s.position, s.normal, 8u).rgb;
     if ((GI_DIFFUSE & 1u) != 0u)
-        arriving = gi_hemisphere(start, s.normal, vec3(0.0), GI_START, gi_reach(), 6u,
+        arriving = gi_hemisphere(start, s.normal, vec2(0.0), GI_START, gi_reach(), 6u,
                                  frame.sky_zenith.rgb * gi.scale.y,
                                  frame.sky_horizon.rgb * gi.scale.y)
                        .light;

@@ -230,6 +230,28 @@ void gi_store_radiance(uint slot, uint face, vec4 radiance) {
 
 // --- The images of filtered light ---
 
+// With faces apart a texel's a is not its opacity but its density: light gets through a texel by
+// exp2(-GI_DENSEST a), and rgb is premultiplied by the density. Samplers blend what they read; of a
+// wall between two samples each has a part, and parts of a density add up to it wherever the samples
+// lie, where parts of an opacity let light through. Densities also follow a ray's step and what it
+// meets a surface at (gi_cones.glsl). What is sparse or smaller than a texel has little of it.
+// Directions isotropic: the mean density of what a texel holds.
+const float GI_DENSEST = 10.0; // a wall a texel thick lets 2^-GI_DENSEST through
+float gi_opacity(float density) { return 1.0 - exp2(-GI_DENSEST * density); }
+float gi_density(float opacity) {
+    return min(log2(max(1.0 - opacity, exp2(-GI_DENSEST))) * (-1.0 / GI_DENSEST), 1.0);
+}
+// Premultiplied by density: by opacity, through a way of so many texels.
+vec4 gi_solid(vec4 texel, float way) {
+    float opacity = gi_opacity(texel.a * way);
+    return vec4(texel.rgb * (opacity / max(texel.a, 1e-6)), opacity);
+}
+// And back, a way of one.
+vec4 gi_dense(vec4 light) {
+    float density = gi_density(light.a);
+    return vec4(light.rgb * (density / max(light.a, 1e-6)), density);
+}
+
 vec4 gi_encode(vec4 radiance) {
     return GI_FORMAT != 0u ? vec4(min(radiance.rgb / gi.scale.x, vec3(1.0)), radiance.a)
                            : vec4(min(radiance.rgb, vec3(65000.0)), radiance.a);
@@ -256,6 +278,16 @@ GiAxes gi_axes(vec3 direction) {
                       direction.z < 0.0 ? 4.0 : 5.0);
     axes.weight = GI_FACES != 0u ? abs(direction) : direction * direction;
     return axes;
+}
+
+// What the three blocks say together. Faces apart: of a flat thing across an axis a ray meets |d| of
+// what it covers along it, of a round one that covers as much along each as much again. So densities
+// add up as lengths do that are perpendicular; their sum would make round things 1.5 times as large.
+vec4 gi_axes_blend(vec4 x, vec4 y, vec4 z, GiAxes axes) {
+    vec4 sum = x * axes.weight.x + y * axes.weight.y + z * axes.weight.z;
+    if (GI_FACES == 0u) return sum;
+    vec3 each = vec3(x.a, y.a, z.a) * axes.weight;
+    return sum * (length(each) / max(sum.a, 1e-6));
 }
 
 // is_whole: the level is, and the sampler need not look at two.
@@ -287,9 +319,9 @@ vec4 gi_atlas_sample(vec3 p, uint cascade, float level, GiAxes axes) {
         sum = gi_atlas_fetch(q, level);
     } else {
         vec3 x = (axes.block + q.x) * (1.0 / 6.0);
-        sum = gi_atlas_fetch(vec3(x.x, q.yz), level) * axes.weight.x +
-              gi_atlas_fetch(vec3(x.y, q.yz), level) * axes.weight.y +
-              gi_atlas_fetch(vec3(x.z, q.yz), level) * axes.weight.z;
+        sum = gi_axes_blend(gi_atlas_fetch(vec3(x.x, q.yz), level),
+                            gi_atlas_fetch(vec3(x.y, q.yz), level),
+                            gi_atlas_fetch(vec3(x.z, q.yz), level), axes);
     }
     return gi_decode(sum);
 }

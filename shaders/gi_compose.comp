@@ -58,7 +58,7 @@ void main() {
         ivec2 pixel = ivec2(place & 0xFFFFu, place >> 16);
         GbufferPixel g = gbuffer_read(pixel);
         Surface s = gbuffer_surface(g);
-        put(pixel, composed(g, s, gi_trace_pixel(g, s, uvec2(pixel), vec3(0.0), is_on)), is_on);
+        put(pixel, composed(g, s, gi_trace_pixel(g, s, uvec2(pixel), vec2(0.0), is_on)), is_on);
         b += gl_SubgroupSize;
         if (subgroupAll(b >= count)) break;
     }

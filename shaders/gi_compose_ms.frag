@@ -37,7 +37,7 @@ vec4 compose(ivec2 pixel) {
         bool alone;
         light = upsample(pixel, g, tap_read(tap), tap_read(tap + ivec2(1, 0)),
                          tap_read(tap + ivec2(0, 1)), tap_read(tap + 1), alone);
-        GiPixel own = gi_trace_pixel(g, s, uvec2(pixel), vec3(0.0), alone);
+        GiPixel own = gi_trace_pixel(g, s, uvec2(pixel), vec2(0.0), alone);
         light.diffuse = alone ? own.diffuse : light.diffuse;
         light.specular = alone ? own.specular : light.specular;
     }

@@ -19,18 +19,16 @@
 //
 // With faces apart walls hold light back. What is blended must lie within the cone: texels narrower
 // than it, with the usual step factor a fifth of its width (linear filtering reaches 1.5 of them to
-// each side: wider ones show what lies beside the walls that the cone passed). No layer of them may
-// be stepped over: a wall is at least a texel thick at any level, and of two samples 1.5 texels apart
-// one at least is within 0.75 of its middle, so what they see of it, times GI_DENSER, leaves less
-// than a tenth. And surfaces must be opaque at any angle: a ray crosses |d| faces a voxel of an axis
-// that its direction has d of, so that is what the axis' block counts, not d squared (gi_axes).
-// Smaller steps leak less.
+// each side: wider ones show what lies beside the walls that the cone passed). What texels hold is a
+// density (gi.glsl): of samples up to a texel apart those about a wall add up to the whole of it,
+// wherever they lie, and those about something sparse to no more. Surfaces must be opaque at any
+// angle: a ray crosses |d| faces a texel of an axis that its direction has d of, so that is what the
+// axis' block counts, not d squared (gi_axes). Smaller steps leak less.
 #ifndef GI_CONES_GLSL
 #define GI_CONES_GLSL
 
 const float GI_START = 1.0;  // voxels from the apex to the first sample
 const float GI_OPAQUE = 0.95; // as good as 1
-const float GI_DENSER = 3.0;      // what a sample counts, up to opaque
 const float GI_CLOSER = 2.0 / 3.0; // on the step factor
 const float GI_FINER = 2.0 / 3.0;  // texels as wide as so many steps
 const float GI_CLOSEST = GI_FACES != 0u ? 1.0 / 3.0 : 0.0; // voxels, a step at least
@@ -102,8 +100,9 @@ float gi_cone_lod(float diameter) {
     return max(log2(width), 0.0);
 }
 
-void gi_cone_add(inout GiCone cone, vec4 s, float falloff) {
-    if (GI_FACES != 0u) s *= min(GI_DENSER, 1.0 / max(s.a, 1e-3));
+// way: texels that the sample stands for, of densities.
+void gi_cone_add(inout GiCone cone, vec4 s, float way, float falloff) {
+    if (GI_FACES != 0u) s = gi_solid(s, way);
     float seen = 1.0 - cone.light.a;
     cone.light += s * seen;
     cone.occlusion += s.a * seen * falloff;
@@ -129,9 +128,9 @@ vec4 gi_cone_atlas(vec3 q, float level, float layer, bool is_whole, GiAxes axes)
         q.z = clamp(q.z, edge, 1.0 - edge) * 0.5 + layer;
     }
     vec3 x = (axes.block + clamp(q.x, half_texel, 1.0 - half_texel)) * (1.0 / 6.0);
-    return gi_atlas_fetch(vec3(x.x, q.yz), level, is_whole) * axes.weight.x +
-           gi_atlas_fetch(vec3(x.y, q.yz), level, is_whole) * axes.weight.y +
-           gi_atlas_fetch(vec3(x.z, q.yz), level, is_whole) * axes.weight.z;
+    return gi_axes_blend(gi_atlas_fetch(vec3(x.x, q.yz), level, is_whole),
+                         gi_atlas_fetch(vec3(x.y, q.yz), level, is_whole),
+                         gi_atlas_fetch(vec3(x.z, q.yz), level, is_whole), axes);
 }
 
 // Factor from one length of a cone to the next. Rounded, if that changes it by little, so that the
@@ -159,7 +158,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
         float narrow_end = min(end, 1.001 / width), near_end = min(end, 1.999 / width);
         bool goes_on = t < narrow_end;
         if (goes_on) for (;;) {
-            gi_cone_add(cone, gi_base_fetch(q + dq * t), 1.0 / (1.0 + lambda * t));
+            gi_cone_add(cone, gi_base_fetch(q + dq * t), 1.0, 1.0 / (1.0 + lambda * t));
             t = width * t > 0.999 ? t * growth : t + factor;
             if (t >= narrow_end || cone.light.a >= GI_OPAQUE) break;
         }
@@ -169,7 +168,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
             float share = log2(max(width * t, 1.0));
             if (GI_MIPS == GI_READ_NEAREST) share = floor(share + 0.5);
             vec4 s = mix(gi_base_fetch(at), gi_cone_atlas(at, 0.0, 0.0, true, axes), share);
-            gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
+            gi_cone_add(cone, s, 1.0, 1.0 / (1.0 + lambda * t));
             t *= growth;
             if (t >= near_end || cone.light.a >= GI_OPAQUE) break;
         }
@@ -179,7 +178,7 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
             float level = is_whole || abs(lod - whole) < 0.01 ? whole : lod;
             if (has_thirds) layer = lod - whole > 0.1 && whole < last_level ? 0.5 : 0.0;
             level = min(level, last_level);
-            gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, layer, is_whole, axes),
+            gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, layer, is_whole, axes), 1.0,
                         1.0 / (1.0 + lambda * t));
             t *= growth;
             if (t >= end || cone.light.a >= GI_OPAQUE) break;
@@ -187,12 +186,14 @@ GiCone gi_cone_single(vec3 start, vec3 direction, float tan_half, float t, float
         gi_cone_end(cone);
         return cone;
     }
+    float seen = 0.0; // a sample stands for the way since the one before
     if (t < end) for (;;) {
         float diameter = max(width * t, 1.0);
         float level = min(gi_cone_lod(diameter) - gi_atlas_lod(), last_level);
         if (GI_MIPS == GI_READ_NEAREST) level = floor(level + 0.5);
         gi_cone_add(cone, gi_cone_atlas(q + dq * t, level, 0.0, is_nearest, axes),
-                    1.0 / (1.0 + lambda * t));
+                    (t - seen) * exp2(-level), 1.0 / (1.0 + lambda * t));
+        seen = t;
         t += max(diameter * factor, GI_CLOSEST);
         if (t >= end || cone.light.a >= GI_OPAQUE) break;
     }
@@ -208,17 +209,18 @@ GiCone gi_cone_cascades(vec3 start, vec3 direction, float tan_half, float t, flo
     GiCone cone = GiCone(vec4(0.0), 0.0, 0.0);
     GiAxes axes = gi_axes(direction);
     float width = 2.0 * tan_half, factor = gi_cone_factor();
-    float lambda = gi_lambda;
+    float lambda = gi_lambda, seen = 0.0;
     if (t < end) for (;;) {
         vec3 at = start + direction * t;
         uint cascade = min(gi_cascade(at, width * t), GI_CASCADES - 1u);
         float voxel = gi_voxel_of(cascade);
         float diameter = max(width * t, gi_grain(at, cascade));
-        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, gi_cone_lod(diameter / voxel),
-                           axes);
+        float lod = gi_cone_lod(diameter / voxel);
+        vec4 s = gi_sample(gi_to_voxels(at, cascade), cascade, lod, axes);
         float step = max(diameter * factor, GI_CLOSEST * voxel);
         if (fades) s *= clamp((end - t) / step, 0.0, 1.0);
-        gi_cone_add(cone, s, 1.0 / (1.0 + lambda * t));
+        gi_cone_add(cone, s, (t - seen) / voxel * exp2(-lod), 1.0 / (1.0 + lambda * t));
+        seen = t;
         t += step;
         if (t >= end || cone.light.a >= GI_OPAQUE) break;
     }
@@ -262,13 +264,27 @@ float gi_reach() { return gi_cone_flow.z > 0.0 ? gi_cone_flow.z : 1e9; }
 // give almost equal cones, except close to that vector itself.
 const vec3 GI_TANGENT_POLE = vec3(0.267261242, 0.534522484, 0.801783726);
 
+// With faces apart a cone's samples are a fifth as wide as the cone: six of them miss much of the
+// hemisphere. So they turn about in it: what counts by the cosine is even over the disk below the
+// hemisphere (Malley's method: Pharr et al., Physically Based Rendering, 3rd ed., 13.6.3), of which
+// the cone along the normal has the inner half's quarter, each other one a fifth of the ring around
+// it. A lean is a place in the part of each, -1..1 twice; places that are even there make directions
+// that are even over the hemisphere. 0, 0: the axes.
+// One of 16 leans, for a rank.
+vec2 gi_lean_of(uint rank) { return vec2(rank & 3u, rank >> 2) * 0.5 - 0.75; }
+// Turn of each of the five, for a lean.y of -0.75, -0.25, 0, 0.25 or 0.75 times 36 degrees.
+vec2 gi_lean_turn(float lean) {
+    vec2 turn = abs(lean) > 0.5 ? vec2(0.891006524, 0.453990500) : vec2(0.987688341, 0.156434465);
+    return lean == 0.0 ? vec2(1.0, 0.0) : vec2(turn.x, lean < 0.0 ? -turn.y : turn.y);
+}
+
 struct GiHemisphere {
     vec3 light;       // mean radiance, cosine weighted: irradiance / pi
     float visibility; // 1 - mean occlusion
     float steps;
 };
-// lean: added to the directions, where cones are dithered; count: cones, 6, or 0 for none; sky: rgb radiance of zenith and horizon, or 0.
-GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec3 lean, float first, float reach, uint count,
+// lean: faces apart; count: cones, 6, or 0 for none; zenith, horizon: radiance of the sky, or 0.
+GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec2 lean, float first, float reach, uint count,
                            vec3 zenith, vec3 horizon) {
     GiHemisphere sum = GiHemisphere(vec3(0.0), 1.0, 0.0);
     vec3 u = cross(normal, GI_TANGENT_POLE);
@@ -276,15 +292,19 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec3 lean, float first, floa
     vec3 v = cross(normal, u);
     vec2 turn = vec2(1.0, 0.0);
     float tan_half = gi_cone_flow.x;
+    vec2 inner = 0.5 * lean * sqrt(1.0 - 0.5 * lean.yx * lean.yx); // of the disk: of the first
+    float far2 = lean.x == 0.0 ? 0.75 : 0.625 + 0.375 * lean.x;
+    vec2 ring = sqrt(vec2(far2, 1.0 - far2));
+    vec3 along = u * inner.x + v * inner.y + normal * sqrt(1.0 - dot(inner, inner));
+    if (GI_FACES != 0u) turn = gi_lean_turn(lean.y);
     if (GI_FACES == 0u) first *= gi_cone_first(tan_half);
     if (count > 0u) for (uint i = 0u;;) {
         bool is_first = i == 0u;
         vec3 around = u * turn.x + v * turn.y;
         vec3 direction = is_first ? normal : normal * 0.5 + around * 0.866025404;
-        if (GI_FACES != 0u && (GI_FEATURES & GI_FEATURE_DITHER) != 0u)
-            direction = normalize(direction + lean);
+        if (GI_FACES != 0u) direction = is_first ? along : normal * ring.y + around * ring.x;
         float share = is_first ? 0.25 : 0.15;
-        // The first of the five starts at turn 0: no turn after the one along the normal.
+        // The first of the five starts there: no turn after the one along the normal.
         const vec2 step = vec2(0.309016994, 0.951056516);
         vec2 turned = vec2(turn.x * step.x - turn.y * step.y, turn.x * step.y + turn.y * step.x);
         turn = is_first ? turn : turned;

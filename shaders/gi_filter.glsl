@@ -3,6 +3,12 @@
 #define GI_FILTER_GLSL
 #include "gi.glsl"
 
+const bool HAS_DENSITY = GI_FACES != 0u && GI_DIRECTIONS != 1u;
+
+// As premultiplied light that is composited, from what texels hold and back.
+vec4 filter_load(vec4 texel) { return HAS_DENSITY ? gi_solid(texel, 1.0) : texel; }
+vec4 filter_result(vec4 light) { return HAS_DENSITY ? gi_dense(light) : light; }
+
 // Both premultiplied.
 vec4 filter_over(vec4 front, vec4 back) { return front + back * (1.0 - front.a); }
 

@@ -117,9 +117,10 @@ void list_parents() {
     {                                                                                             \
         if (GI_FACES != 0u)                                                                       \
             for (int i = 0; i < 8; i++)                                                           \
-                c[i] = imageLoad(source, child(corner, i) + ivec3(d * int(gi.dims.x), 0, 0));     \
+                c[i] = filter_load(                                                               \
+                    imageLoad(source, child(corner, i) + ivec3(d * int(gi.dims.x), 0, 0)));       \
         imageStore(target, parent + ivec3(d * int(gi.dims.x >> 1), 0, 0),                         \
-                   GI_DIRECTIONS == 1u ? filter_average(c) : filter_along(c, d));                 \
+                   filter_result(GI_DIRECTIONS == 1u ? filter_average(c) : filter_along(c, d)));  \
     }
 ivec3 child(ivec3 corner, int i) { return corner + ivec3(i & 1, i >> 1 & 1, i >> 2); }
 

@@ -8,7 +8,7 @@ layout(set = 0, binding = BUILD_MIP_SOURCE, GI_STORAGE_FORMAT) uniform readonly 
 layout(set = 0, binding = BUILD_MIP_TARGET, GI_STORAGE_FORMAT) uniform writeonly image3D target;
 
 vec4 pair(ivec3 front, ivec3 back) {
-    return filter_over(imageLoad(source, front), imageLoad(source, back));
+    return filter_over(filter_load(imageLoad(source, front)), filter_load(imageLoad(source, back)));
 }
 
 void main() {
@@ -33,5 +33,5 @@ void main() {
     front += depth * int(is_positive);
     vec4 sum = pair(front, back) + pair(front + right, back + right) +
                pair(front + up, back + up) + pair(front + right + up, back + right + up);
-    imageStore(target, texel, sum * 0.25);
+    imageStore(target, texel, filter_result(sum * 0.25));
 }

@@ -30,7 +30,7 @@ vec3 gather_axis(uint face) {
 // Irradiance / pi at one of them.
 vec3 gather(uint face) {
     vec3 axis = gather_axis(face);
-    return gi_hemisphere(voxel_front(axis), axis, vec3(0.0), GI_START, gi_reach(), 6u,
+    return gi_hemisphere(voxel_front(axis), axis, vec2(0.0), GI_START, gi_reach(), 6u,
                          gi_frame.sky_zenith.rgb * gi.scale.y,
                          gi_frame.sky_horizon.rgb * gi.scale.y)
         .light;

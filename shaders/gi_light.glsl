@@ -197,7 +197,7 @@ void add_probes(uint slot) {
 // --- The result ---
 
 void store_face(uint slot, uint f, vec3 sent) {
-    gi_store_radiance(slot, f, vec4(sent * voxel_face(f), opacity[f >> 1]));
+    gi_store_radiance(slot, f, vec4(sent * voxel_face(f), voxel_density(f)));
 }
 
 void base_store(ivec3 place, vec4 texel) {

@@ -60,20 +60,17 @@ float gi_first(uvec2 pixel) {
     return GI_START + step * ((float(rank) + 0.5) * (1.0 / 32.0) - 0.25);
 }
 
-// What is added to the diffuse cones' directions. With faces apart a cone's samples are a fifth as
-// wide as the cone: six of them miss much of the hemisphere, at every pixel the same. Dithered, each
-// of 16 pixels leans them another way, within the cones, and gi_smooth.comp takes the pixels' mean
-// (interleaved sampling: Keller and Heidrich 2001). The wide samples of shared faces need none.
-vec3 gi_lean(uvec2 pixel) {
-    if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u || GI_FACES == 0u) return vec3(0.0);
-    uint rank = gi_rank_of(pixel);
-    vec3 corner = vec3(rank >> 3 & 1u, rank >> 2 & 1u, rank >> 1 & 1u) * 2.0 - 1.0;
-    return corner * ((rank & 1u) == 0u ? 0.12 : 0.26);
+// The diffuse cones' lean. Dithered, each of 16 pixels has another, and gi_smooth.comp takes the
+// pixels' mean (interleaved sampling: Keller and Heidrich 2001). The wide samples of shared faces
+// need none.
+vec2 gi_lean(uvec2 pixel) {
+    if ((GI_FEATURES & GI_FEATURE_DITHER) == 0u || GI_FACES == 0u) return vec2(0.0);
+    return gi_lean_of(gi_rank_of(pixel));
 }
 
 // is_on: false traces nothing (loops of no rounds: a branch would not save the work).
 // lean: gi_lean, or 0 for a pixel by itself.
-GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, vec3 lean, bool is_on) {
+GiPixel gi_trace_pixel(GbufferPixel g, Surface s, uvec2 pixel, vec2 lean, bool is_on) {
     GiPixel result = GiPixel(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0));
     vec3 zenith = frame.sky_zenith.rgb * gi.scale.y, horizon = frame.sky_horizon.rgb * gi.scale.y;
     vec3 start = gi_start(g);

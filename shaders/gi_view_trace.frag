@@ -17,7 +17,7 @@ float steps_of(GbufferPixel g, Surface s, bool is_on) {
     vec3 start = gi_start(g);
     float sum = 0.0;
     if (GI_DIFFUSE == 1u || (GI_DIFFUSE != 2u && (GI_FEATURES & GI_FEATURE_AO) != 0u))
-        sum += gi_hemisphere(start, g.normal, vec3(0.0), GI_START, gi_reach(), is_on ? 6u : 0u, vec3(0.0),
+        sum += gi_hemisphere(start, g.normal, vec2(0.0), GI_START, gi_reach(), is_on ? 6u : 0u, vec3(0.0),
                              vec3(0.0))
                    .steps;
     if (gi_has_specular()) {
@@ -49,6 +49,7 @@ vec3 first_light(vec3 from, vec3 direction, bool is_on) {
             met = texelFetch(gi_atlas, place + ivec3(block.x, 0, 0), 0) * axes.weight.x +
                   texelFetch(gi_atlas, place + ivec3(block.y, 0, 0), 0) * axes.weight.y +
                   texelFetch(gi_atlas, place + ivec3(block.z, 0, 0), 0) * axes.weight.z;
+            met = gi_solid(met, 1.0);
         }
         view_next(walk);
         end = view_is_inside(walk) ? end : -1.0;

@@ -105,7 +105,9 @@ vec3 filtered_cells(vec3 eye, vec3 ray) {
         texel += ivec3(cells.x * int(block), 0, cells.z * int(walk.cascade));
         // The eye may stand in a coarse cell: what is closer than half of one is passed over.
         float shown = walk.t > 0.5 * side * gi_flow.origin[walk.cascade].w ? 1.0 : 0.0;
-        sum += gi_decode(texelFetch(gi_atlas, texel, int(level))) * ((1.0 - sum.a) * shown);
+        vec4 met = texelFetch(gi_atlas, texel, int(level));
+        if (GI_FACES != 0u) met = gi_solid(met, 1.0);
+        sum += gi_decode(met) * ((1.0 - sum.a) * shown);
         view_next(walk);
         range.y = view_is_inside(walk) ? range.y : -1.0;
     }

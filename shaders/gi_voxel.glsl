@@ -17,8 +17,9 @@ uint cascade;
 // What its faces +x +y +z and -x -y -z count. apart: 1, down to 0 for faces that the surface hardly
 // has. shared: sum 1; normal^2 on the side of the normal, without one each face's share.
 vec3 ahead, behind;
-// apart: opacity along x, y, z, seen from either side: from behind a face is dark, not clear.
-vec3 opacity;
+// apart: densities of the faces +x +y +z and -x -y -z, seen from their side: where the surface faces
+// away it is dark, not clear.
+vec3 dense_ahead, dense_behind;
 
 // Is the next voxel towards that side (1, -1) of each axis occupied? 1 or 0; 0 beyond the box.
 vec3 voxel_beside(uvec3 place, int side) {
@@ -50,11 +51,15 @@ void voxel_load(uint slot) {
     ahead = vec3(gi_face(faces, 0u), gi_face(faces, 2u), gi_face(faces, 4u));
     behind = vec3(gi_face(faces, 1u), gi_face(faces, 3u), gi_face(faces, 5u));
     if (GI_FACES != 0u) {
+        // The back of a face is dark. A ray that meets the front of a surface lying aslant passes backs
+        // along another axis, and should see little of them: they count by their share alone.
+        vec3 backs_ahead = behind, backs_behind = ahead;
         ahead = min(ahead * (1.0 / GI_FACE_WHOLE), vec3(1.0));
         behind = min(behind * (1.0 / GI_FACE_WHOLE), vec3(1.0));
-        opacity = max(ahead, behind);
+        dense_ahead = max(ahead, backs_ahead);
+        dense_behind = max(behind, backs_behind);
         // The inside of a solid.
-        if (opacity == vec3(0.0)) opacity = vec3(1.0);
+        if (ahead + behind == vec3(0.0)) dense_ahead = dense_behind = vec3(1.0);
         // Two bodies touch, a wall stands on a floor: opposite faces cancel out, and what is left of
         // the normal lies across. What faces an occupied voxel then lies between the two and is
         // hidden, though the voxel's outer side sees the light; lit, it would shine into the room.
@@ -81,11 +86,13 @@ uint voxel_count() {
     return min(gi_counters[GI_COUNTER_STATIC] + gi_counters[GI_COUNTER_DYNAMIC],
                gi_flow.counts.z);
 }
-// What face f (0..5) counts.
-float voxel_face(uint f) {
-    vec3 side = (f & 1u) == 0u ? ahead : behind;
+float voxel_side(uint f, vec3 positive, vec3 negative) {
+    vec3 side = (f & 1u) == 0u ? positive : negative;
     return f < 2u ? side.x : f < 4u ? side.y : side.z;
 }
+// What face f (0..5) counts, and how dense it is.
+float voxel_face(uint f) { return voxel_side(f, ahead, behind); }
+float voxel_density(uint f) { return voxel_side(f, dense_ahead, dense_behind); }
 vec3 voxel_albedo(uint slot) {
     return unpackUnorm4x8(gi_attribute(slot, GI_ATTRIBUTE_ALBEDO)).rgb;
 }

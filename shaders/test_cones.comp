@@ -26,7 +26,7 @@ void main() {
         light = cone.light;
         more = vec2(cone.occlusion, cone.steps);
     } else {
-        GiHemisphere sum = gi_hemisphere(numbers(i, 0u), numbers(i, 4u), vec3(0.0), GI_START, gi_reach(), 6u,
+        GiHemisphere sum = gi_hemisphere(numbers(i, 0u), numbers(i, 4u), vec2(0.0), GI_START, gi_reach(), 6u,
                                          vec3(1.0), vec3(0.25));
         light = vec4(sum.light, sum.visibility);
         more = vec2(0.0, sum.steps);

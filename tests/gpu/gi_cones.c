@@ -140,12 +140,17 @@ static void read_block(const Volumes *v, u32 d, f32 level, bool has_thirds, cons
 
 static void read_volumes(const Volumes *v, f32 lod, bool has_thirds, const f32 p[3], const f32 d[3],
                          f32 out[4]) {
-    f32 filtered[4] = {0};
+    f32 filtered[4] = {0}, length2 = 0.0f;
     for (u32 a = 0; a < (v->directions == 6 ? 3u : 1u); a++) {
         f32 texel[4], weight = v->directions == 1 ? 1.0f : v->faces ? fabsf(d[a]) : d[a] * d[a];
         u32 block = v->directions == 6 ? a * 2 + (d[a] < 0.0f ? 0 : 1) : 0;
         read_block(v, block, lod - (v->faces ? 0.0f : 1.0f), has_thirds, p, texel);
         for (u32 c = 0; c < 4; c++) filtered[c] += texel[c] * weight;
+        length2 += texel[3] * weight * texel[3] * weight;
+    }
+    if (v->faces && v->directions == 6) { // densities of axes are perpendicular
+        f32 share = sqrtf(length2) / MAX(filtered[3], 1e-6f);
+        for (u32 c = 0; c < 4; c++) filtered[c] *= share;
     }
     memcpy(out, filtered, sizeof filtered);
     if (v->faces) return;
@@ -169,6 +174,7 @@ static Result twin(const Volumes *v, const Cone *cone) {
         f32 at = (cone->start[a] - origin[a]) / voxel;
         if (at < 0.0f || at > SIDE) return r;
     }
+    f32 last = 0.0f;
     for (f32 t = cone->first; t * voxel < cone->reach && r.light[3] < 0.95f;) {
         f32 p[3];
         bool inside = true;
@@ -179,13 +185,17 @@ static Result twin(const Volumes *v, const Cone *cone) {
         if (!inside) break;
         f32 diameter = 2.0f * cone->tan_half * t, texel[4];
         diameter = MAX(diameter, 1.0f);
-        // With faces apart: finer texels, oftener, that count denser (see gi_cones.glsl).
+        // With faces apart: finer texels, oftener, of densities (see gi_cones.glsl).
         f32 lod = log2f(diameter) - (v->faces ? log2f(4.5f) : 0.0f), factor = v->gi.cone[1];
         read_volumes(v, MAX(lod, 0.0f), cone->tan_half == WIDE_TAN, p, cone->direction, texel);
-        if (v->faces) {
+        if (v->faces) { // densities, of the way since the last sample in texels
             factor *= 2.0f / 3.0f;
-            f32 denser = MIN(3.0f, 1.0f / MAX(texel[3], 1e-3f));
-            for (u32 c = 0; c < 4; c++) texel[c] *= denser;
+            f32 level = clamp_f32(lod, 0.0f, (f32)v->levels - 1.0f);
+            if (v->mips == GI_READ_NEAREST) level = floorf(level + 0.5f);
+            f32 way = (t - last) * exp2f(-level);
+            last = t;
+            f32 opacity = 1.0f - exp2f(-10.0f * texel[3] * way);
+            for (u32 c = 0; c < 4; c++) texel[c] *= opacity / MAX(texel[3], 1e-6f);
         }
         f32 seen = 1.0f - r.light[3];
         for (u32 c = 0; c < 4; c++) r.light[c] += texel[c] * seen;

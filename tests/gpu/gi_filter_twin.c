@@ -51,6 +51,19 @@ static void over(const f32 *front, const f32 *back, f32 out[4]) {
     for (u32 i = 0; i < 4; i++) out[i] += front[i] + back[i] * (1.0f - front[3]);
 }
 
+// Faces apart: premultiplied by a density, 1 lets 2^-10 through; as light premultiplied by its
+// opacity, and back.
+static void solid(const f32 texel[4], f32 out[4]) {
+    f32 opacity = 1.0f - exp2f(-10.0f * texel[3]);
+    for (u32 k = 0; k < 3; k++) out[k] = texel[k] * opacity / MAX(texel[3], 1e-6f);
+    out[3] = opacity;
+}
+static void dense(f32 light[4]) {
+    f32 density = MIN(log2f(MAX(1.0f - light[3], 0x1p-10f)) / -10.0f, 1.0f);
+    for (u32 k = 0; k < 3; k++) light[k] *= density / MAX(light[3], 1e-6f);
+    light[3] = density;
+}
+
 // children: 8, by bits 1 x, 2 y, 4 z. What leaves towards direction d (+x -x +y -y +z -z).
 static void combine(const f32 *const children[8], bool isotropic, u32 d, f32 out[4]) {
     memset(out, 0, 4 * sizeof(f32));
@@ -101,8 +114,14 @@ static void make_level(GiTwin *twin, u32 level) {
                         children[i] = from_base ? twin->base + 4 * voxel_of(twin, cx, cy, cz)
                                                 : texel_of(twin, level - 1, d, cx, cy, cz);
                     }
-                    f32 made[4];
+                    f32 made[4], clear[8][4];
+                    bool has_density = twin->apart && !twin->isotropic;
+                    for (u32 i = 0; i < 8 && has_density; i++) {
+                        solid(children[i], clear[i]);
+                        children[i] = clear[i];
+                    }
                     combine(children, twin->isotropic, d, made);
+                    if (has_density) dense(made);
                     store(twin, texel_of(twin, level, d, x, y, z), made);
                 }
 }
