@@ -41,6 +41,10 @@ layout(set = 0, binding = BUILD_BASE_STORAGE, GI_STORAGE_FORMAT) writeonly unifo
     gi_base_storage;
 layout(set = 0, binding = BUILD_VISIBILITY, r8) writeonly uniform image3D gi_visibility_storage;
 
+// Step 4: groups of 64 slots first, first + stride, ... are lit: of all slots with stride 1, else of
+// the static ones; 0: the dynamic ones.
+layout(push_constant) uniform Push { uint first, stride; };
+
 const uint SHADOW_MAP = 1u, SHADOW_RAY = 2u, SHADOW_SOFT_RAY = 3u; // VoxelShadow
 const bool HAS_RAYS = (GI_VISIBILITY & (1u << SHADOW_RAY | 1u << SHADOW_SOFT_RAY)) != 0u;
 const bool HAS_SPOTS = (GI_VISIBILITY & GI_VISIBILITY_SPOTS) != 0u;
@@ -255,12 +259,21 @@ void main() {
         if (gl_GlobalInvocationID.x < count) store_base(gl_GlobalInvocationID.x);
         return;
     }
+    uint slot = gl_GlobalInvocationID.x;
+    if (GI_STEP == STEP_ADD_PROBES) {
+        uint fixed_count = min(gi_counters[GI_COUNTER_STATIC], count);
+        slot = (gl_WorkGroupID.x * stride + first) * 64u + gl_LocalInvocationIndex;
+        slot = stride == 0u ? fixed_count + gl_GlobalInvocationID.x : slot;
+        count = stride > 1u ? fixed_count : count;
+        if (slot - gl_LocalInvocationIndex >= count) return;
+    }
     // All lanes stay on: what they load is shared.
-    voxel_load(min(gl_GlobalInvocationID.x, count - 1u));
+    uint held = min(slot, count - 1u);
+    voxel_load(held);
     whole = light_0 = light_1 = light_2 = light_3 = light_4 = light_5 = vec3(0.0);
     asked = seen = 0.0;
     add_directionals();
     add_locals();
-    if (GI_STEP == STEP_ADD_PROBES) add_probes(min(gl_GlobalInvocationID.x, count - 1u));
-    if (gl_GlobalInvocationID.x < count) store(gl_GlobalInvocationID.x);
+    if (GI_STEP == STEP_ADD_PROBES) add_probes(held);
+    if (slot < count) store(slot);
 }

@@ -14,13 +14,17 @@
 // goes out takes its bounces along within a few frames. A frame that must not hang on earlier ones
 // (PACKET_COLD, or nothing there) makes all rounds by itself.
 // Feedback where there are probes: these keep what went round, and lighting a voxel adds what they
-// say of it. No cones are traced but the probes' own (as Majercik et al. 2019, "Dynamic diffuse
-// global illumination with ray-traced irradiance fields", light what their rays hit).
+// say of it. As one in `share` of them is traced a frame, so one group of static voxels in as many
+// is lit: what they send out reaches nobody but the probes. Dynamic voxels, whose slots are new
+// whenever they moved, are all lit. No cones are traced but the probes' own (as Majercik et al.
+// 2019, "Dynamic diffuse global illumination with ray-traced irradiance fields", light what their
+// rays hit).
 #include "passes.h"
 
 // Each round after the first counts at most the walls' albedo times what the one before did: of
 // walls with 0.7, this many leave 6 % of all light that goes round; of four a quarter was missing.
 #define FEEDBACK_ROUNDS 8
+#define SLOT_GROUP      64 // invocations of gi_light.glsl
 
 // gi_light.glsl
 enum { STEP_LIGHT, STEP_KEEP_BASE, STEP_CLEAR_VISIBILITY, STEP_STORE_BASE, STEP_ADD_PROBES };
@@ -43,13 +47,17 @@ bool gi_feeds_back(const PassContext *c) {
            !c->renderer->gi.is_cold;
 }
 
-// One invocation a slot.
-static void by_slot(const PassContext *c, PipelineKind kind, u32 step) {
+static bool bind(const PassContext *c, PipelineKind kind, u32 step) {
     GpuPipeline pipeline =
         pipeline_get(c->renderer, c->packet, kind, (PipelineVariant){.post = step});
-    if (!pipeline.id) return;
+    if (!pipeline.id) return false;
     gi_bind_build(c, pipeline, 0);
-    gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
+    return true;
+}
+
+// One invocation a slot.
+static void by_slot(const PassContext *c, PipelineKind kind, u32 step) {
+    if (bind(c, kind, step)) gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
 }
 
 // --- Light ---
@@ -64,19 +72,47 @@ static void clear_visibility(const PassContext *c) {
     gi_barrier(c, (RenderResource[]){RESOURCE_GI_VISIBILITY}, 1);
 }
 
+static void push_turn(const PassContext *c, u32 first, u32 stride) {
+    const u32 push[2] = {first, stride}; // gi_light.glsl
+    gpu_cmd_push(c->cmd, push, sizeof push);
+}
+
+// Light and what probes say of it, for all voxels.
+static void add_probes_record(const PassContext *c) {
+    if (!bind(c, PIPELINE_GI_LIGHT, STEP_ADD_PROBES)) return;
+    push_turn(c, 0, 1);
+    gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
+}
+// The same for those whose turn it is.
+static void add_probes_in_turns(const PassContext *c, u32 turns) {
+    const GiState *gi = &c->renderer->gi;
+    if (!bind(c, PIPELINE_GI_LIGHT, STEP_ADD_PROBES)) return;
+    // How many there are only the device knows: of the groups that there could be, those beyond
+    // end.
+    u32 groups = (gi->slot_cap + SLOT_GROUP - 1) / SLOT_GROUP, first = gi->probe_turn % turns;
+    push_turn(c, first, turns);
+    if (groups > first) gpu_cmd_dispatch(c->cmd, (groups - first + turns - 1) / turns, 1, 1);
+    if (!gi->has_dynamic) return;
+    push_turn(c, 0, 0);
+    gi_dispatch_slots(c, GI_COUNTER_DYNAMIC_ARGS);
+}
+
 static void light_record(const PassContext *c) {
     const GiState *gi = &c->renderer->gi;
     // Nothing is in the way of what is not voxelised.
     if (gi->voxelise_static && (gi->voxel_shadows & GI_VISIBILITY_KEPT)) clear_visibility(c);
-    bool has_probes = gi_bounces_by_probes(&c->packet->gi.params) && !gi->is_cold;
-    u32 step = gi_feeds_back(c) ? STEP_KEEP_BASE : has_probes ? STEP_ADD_PROBES : STEP_LIGHT;
-    by_slot(c, PIPELINE_GI_LIGHT, step);
+    if (gi_bounces_by_probes(&c->packet->gi.params) && !gi->is_cold) {
+        u32 turns = c->packet->gi.params.share;
+        if (turns > 1 && !gi->voxelise_static)
+            add_probes_in_turns(c, turns);
+        else
+            add_probes_record(c);
+        return;
+    }
+    by_slot(c, PIPELINE_GI_LIGHT, gi_feeds_back(c) ? STEP_KEEP_BASE : STEP_LIGHT);
 }
 static void light_again_record(const PassContext *c) {
     by_slot(c, PIPELINE_GI_LIGHT, STEP_KEEP_BASE);
-}
-static void add_probes_record(const PassContext *c) {
-    by_slot(c, PIPELINE_GI_LIGHT, STEP_ADD_PROBES);
 }
 static void store_record(const PassContext *c) { by_slot(c, PIPELINE_GI_LIGHT, STEP_STORE_BASE); }
 

@@ -211,7 +211,7 @@ extern "C" {
     C(ENUM, resolution, "full half quarter", 0, "resolution", 0, 2, "of the traced picture")      \
     C(BOOL, dither, "", 0, "dither", 0, 1, "neighbouring cones differ, and are smoothed: against bands and blotches")     \
     C(ENUM, mips, "linear nearest", 0, "mips", 0, 1, "cones blend two levels, or take the nearer") \
-    C(U32, share, "", 1, "share", 1, 64, "probes: one in so many is traced anew each tick")       \
+    C(U32, share, "", 1, "share", 1, 64, "probes, and with feedback the voxels that they light: one in so many anew each tick")       \
     C(F32, probe_spacing, "m", 1, "probe_spacing", 0.05, 100, "probes: distance to the next")     \
     C(F32, strength, "", 1, "strength", 0, 100, "factor on indirect light")                       \
     C(F32, ao_lambda, "1/m", 1, "ao_lambda", 0, 100, "how fast occluders lose weight with distance") \

@@ -272,6 +272,49 @@ static void feedback_replays(const char *list) {
     assert_true(hashes[0][0] != hashes[0][1] && hashes[0][2] != hashes[0][3]);
     assert_true(cold[0] == cold[1]);
 }
+// With share 4 a frame lights one group of 64 static voxels in four, and all dynamic ones; when it
+// has come to rest, voxels send out what they do with share 1, whatever the order.
+TEST_GPU(gi_light_frames, feedback_by_probes_takes_turns) {
+    const char *lists[] = {"gi.feedback=on,gi.diffuse=probes,gi.share=1",
+                           "gi.feedback=on,gi.diffuse=probes,gi.share=4"};
+    f64 sent[2];
+    for (u32 run = 0; run < 2; run++) {
+        Studio studio;
+        studio_open(&studio, "data/levels/cornell.toml");
+        InstanceTable *instances = WORLD_TABLE(studio.session.world, Instance, instance);
+        u32 row = table_row(&instances->table, world_find(studio.session.world, "short_box"));
+        instances->voxel_mode[row] = VOXEL_DYNAMIC;
+        table_touch(&instances->table, row);
+        draw(&studio, "main", lists[run]);
+        Lit before = read_lit(&studio, 1);
+        const u32 *counters =
+            read_volume(&studio, GI_VOLUME_COUNTERS, GI_COUNTER_COUNT * sizeof(u32));
+        u32 fixed = counters[GI_COUNTER_STATIC], turns[4] = {0}, moving = 0;
+        change_lights(&studio, 0.5f, 0.0f);
+        draw(&studio, "main", lists[run]);
+        Lit after = read_lit(&studio, 1);
+        assert_int_equal(after.slots, before.slots);
+        for (u32 slot = 0; slot < after.slots; slot++) {
+            if (memcmp(&before.radiance[4 * slot], &after.radiance[4 * slot], 4 * sizeof(f32)) == 0)
+                continue;
+            if (slot < fixed)
+                turns[slot / 64 % 4]++;
+            else
+                moving++;
+        }
+        u32 busy = 0, changed = turns[0] + turns[1] + turns[2] + turns[3];
+        for (u32 i = 0; i < 4; i++) busy += turns[i] > 0;
+        assert_int_equal(busy, run == 0 ? 4 : 1);
+        assert_in_range(changed, fixed / (run == 0 ? 4 : 16), run == 0 ? fixed : (fixed + 255) / 4);
+        assert_true(moving > (after.slots - fixed) / 4); // as many as see light
+        for (u32 frame = 0; frame < 70; frame++) draw(&studio, "main", lists[run]);
+        sent[run] = lit_total(&studio);
+        studio_close(&studio);
+    }
+    printf("    sent with share 1: %.3f, with share 4: %.3f\n", sent[0], sent[1]);
+    ASSERT_NEAR(sent[1], sent[0], sent[0] * 2e-3);
+}
+
 TEST_GPU(gi_light_frames, feedback_replays) { feedback_replays("gi.feedback=on,gi.diffuse=cones"); }
 TEST_GPU(gi_light_frames, feedback_by_probes_replays) {
     feedback_replays("gi.feedback=on,gi.diffuse=probes,gi.share=2");
