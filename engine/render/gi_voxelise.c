@@ -390,7 +390,10 @@ static bool dynamic_needed(const PassContext *c) {
 static void dynamic_record(const PassContext *c) {
     // The last dynamic voxels go, by their list; static slots stay as they are.
     const GiDrawRecord record = {.how = {GI_DRAW_DYNAMIC}};
-    if (!c->renderer->gi.voxelise_static && bind_step(c, PIPELINE_GI_CLEAR, CLEAR_IMAGES, &record))
+    const GiState *gi = &c->renderer->gi;
+    bool has_images = gi_wants_irradiance(c->packet) || (gi->voxel_shadows & GI_VISIBILITY_KEPT);
+    if (has_images && !gi->voxelise_static &&
+        bind_step(c, PIPELINE_GI_CLEAR, CLEAR_IMAGES, &record))
         gi_dispatch_slots(c, GI_COUNTER_DYNAMIC_ARGS);
     to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_COPY_TARGET);
     fill_layers(c, GI_MASK_DYNAMIC, 1);
