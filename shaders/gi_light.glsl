@@ -108,22 +108,36 @@ void add_local(GiLightRecord a) {
     voxel_add(a.color.rgb * falloff, l, facing);
 }
 
-// Lights [at, end) of the lists, the same for all lanes; for those lanes whose turn it is. An index
-// that the compiler knows to be the same for all lanes makes the reads scalar ones; of the uniform
-// block, if the lights fit into it, they are cheapest.
-void add_list(uint at, uint end, bool is_mine) {
-    if (at < end)
+// Lights [first, end) of the lists, the same for all lanes; for those lanes whose turn it is. Each
+// lane loads one, and a shuffle tells the others: of the index, if the lights fit into the uniform
+// block, else of all. (The software driver reads a storage buffer within a loop lane by lane, at an
+// address that is the same for all lanes too.)
+void add_list(uint first, uint end, bool is_mine) {
+    uint b = first;
+    if (b < end)
         do {
-            uint index = subgroupBroadcastFirst(gi_lists[subgroupBroadcastFirst(at)]);
-            GiLightRecord a;
-            if (IN_BLOCK)
-                a = gi_light_block[index];
-            else
-                a = gi_lights[index];
-            // Out of reach of everybody else.
-            a.position.w = is_mine ? a.position.w : 1e30;
-            add_local(a);
-        } while (++at < end);
+            uint own_index = gi_lists[min(b + gl_SubgroupInvocationID, end - 1u)];
+            GiLightRecord own;
+            if (!IN_BLOCK) own = gi_lights[own_index];
+            uint count = min(gl_SubgroupSize, end - b), j = 0u;
+            do {
+                GiLightRecord a;
+                if (IN_BLOCK) {
+                    a = gi_light_block[subgroupShuffle(own_index, j)];
+                } else {
+                    a.position = subgroupShuffle(own.position, j);
+                    a.color = subgroupShuffle(own.color, j);
+                    if (HAS_SPOTS) {
+                        a.direction = subgroupShuffle(own.direction, j);
+                        a.extra.xy = subgroupShuffle(own.extra.xy, j);
+                    }
+                }
+                // Out of reach of everybody else.
+                a.position.w = is_mine ? a.position.w : 1e30;
+                add_local(a);
+            } while (++j < count);
+            b += gl_SubgroupSize;
+        } while (b < end);
 }
 
 void add_locals() {
