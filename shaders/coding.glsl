@@ -82,6 +82,11 @@ vec3 light8_decode(vec4 t) {
     return code > 0.0 ? t.rgb * t.rgb * exp2((code - 160.0) / 12.0) : vec3(0.0);
 }
 
+// Albedo 0..1 by its root, about as fine as the sRGB curve: drawing into a target whose format is
+// sRGB was a quarter of the software driver's instructions for a G-buffer.
+vec3 albedo8_encode(vec3 albedo) { return sqrt(max(albedo, vec3(0.0))); }
+vec3 albedo8_decode(vec3 t) { return t * t; }
+
 // Specular power 1..2048 on a logarithmic scale, bytes 1..255 (0 is left to the caller).
 float power8_encode(float power) {
     return (1.0 + 254.0 / 11.0 * log2(clamp(power, 1.0, 2048.0))) / 255.0;

@@ -47,7 +47,7 @@ float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 void gbuffer_write(vec3 position, vec3 direction, vec3 albedo, uint material, out vec4 t[5]) {
     for (uint i = 0u; i < 5u; i++) t[i] = vec4(0.0);
     vec3 eye = position - frame.camera.xyz;
-    vec4 indexed = vec4(albedo, float(material) / 255.0);
+    vec4 indexed = vec4(albedo8_encode(albedo), float(material) / 255.0);
     if (LAYOUT == GBUFFER_LAYOUT_LEAN) {
         t[0] = indexed;
         t[1].xy = oct_encode(direction) * 0.5 + 0.5; // the length cancels
@@ -89,7 +89,7 @@ void gbuffer_write(vec3 position, vec3 direction, vec3 albedo, uint material, ou
         t[2] = vec4(motion8_encode(camera_motion(position)),
                     emissive.w > 0.0 ? power8_encode(specular.w) : 0.0,
                     sqrt(min(luminance(specular.rgb), 1.0)));
-        t[3] = vec4(albedo, SHADOW != 0u ? shadow_visibility(position, normal) : 1.0);
+        t[3] = vec4(albedo8_encode(albedo), SHADOW != 0u ? shadow_visibility(position, normal) : 1.0);
     }
     if (LAYOUT == GBUFFER_LAYOUT_STARCRAFT2) {
         t[0] = emissive;
@@ -160,7 +160,7 @@ GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
     g.motion = vec2(0.0);
     if (LAYOUT == GBUFFER_LAYOUT_LEAN) {
         vec4 indexed = texelFetch(gbuffer_0, pixel, 0);
-        g.albedo = indexed.rgb;
+        g.albedo = albedo8_decode(indexed.rgb);
         g.material = uint(indexed.a * 255.0 + 0.5);
         g.normal = oct_decode(texelFetch(gbuffer_1, pixel, 0).xy * 2.0 - 1.0);
         g.position = position_from_depth(vec2(pixel) + 0.5, g.depth);
@@ -169,7 +169,7 @@ GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
         g.position = texelFetch(gbuffer_0, pixel, 0).xyz;
         g.normal = texelFetch(gbuffer_1, pixel, 0).xyz;
         vec4 indexed = texelFetch(gbuffer_2, pixel, 0);
-        g.albedo = indexed.rgb;
+        g.albedo = albedo8_decode(indexed.rgb);
         g.material = uint(indexed.a * 255.0 + 0.5);
     }
     if (LAYOUT == GBUFFER_LAYOUT_PACKED) {
@@ -177,7 +177,7 @@ GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
         g.normal = facing8_decode(geometry.xy);
         g.position = frame.camera.xyz + normalize(pixel_ray(pixel)) *
                                             distance16_decode(geometry.zw, frame.coding.x);
-        g.albedo = indexed.rgb;
+        g.albedo = albedo8_decode(indexed.rgb);
         g.material = uint(indexed.a * 255.0 + 0.5);
     }
     if (LAYOUT == GBUFFER_LAYOUT_PACKED24) {
@@ -186,7 +186,7 @@ GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
         g.position = frame.camera.xyz +
                      normalize(pixel_ray(pixel)) *
                          distance24_decode(texelFetch(gbuffer_1, pixel, 0).xyz, frame.coding.x);
-        g.albedo = indexed.rgb;
+        g.albedo = albedo8_decode(indexed.rgb);
         g.material = uint(indexed.a * 255.0 + 0.5);
     }
     if (LAYOUT == GBUFFER_LAYOUT_HALF5) {
@@ -209,7 +209,7 @@ GbufferPixel gbuffer_read_at(ivec2 pixel, float depth) {
         g.motion = motion8_decode(shine.xy);
         g.receives = shine.z > 0.0 ? 1.0 : 0.0;
         g.specular = vec4(vec3(shine.w * shine.w), power8_decode(shine.z));
-        g.albedo = albedo.rgb;
+        g.albedo = albedo8_decode(albedo.rgb);
         g.sun = albedo.a;
     }
     if (LAYOUT == GBUFFER_LAYOUT_STARCRAFT2) {

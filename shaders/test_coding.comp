@@ -20,5 +20,6 @@ void main() {
     if (CODING == 5u) v.rgb = light8_decode(t);
     if (CODING == 6u) v.x = power8_decode(t.x);
     if (CODING == 7u) v.xy = motion8_decode(t.xy);
+    if (CODING == 8u) v.rgb = albedo8_decode(t.rgb);
     values_out[p.y * side + p.x] = v;
 }

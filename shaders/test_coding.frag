@@ -19,5 +19,6 @@ void main() {
     if (CODING == 5u) t = light8_encode(v.rgb);
     if (CODING == 6u) t.x = power8_encode(v.x);
     if (CODING == 7u) t.xy = motion8_encode(v.xy);
+    if (CODING == 8u) t.rgb = albedo8_encode(v.rgb);
     out_code = t;
 }

@@ -25,21 +25,21 @@
 
 const LayoutRow layout_table[LAYOUT_COUNT] = {
     [LAYOUT_LEAN] = {.name = "lean",
-                     .targets = {GPU_FORMAT_RGBA8_SRGB, GPU_FORMAT_RG16},
+                     .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RG16},
                      .position_normal_bytes = 4,
                      .loses = "nothing to speak of: normals within 0.004 degrees"},
     [LAYOUT_WIDE] = {.name = "wide",
-                     .targets = {GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA8_SRGB},
+                     .targets = {GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA32F, GPU_FORMAT_RGBA8},
                      .position_normal_bytes = 32,
                      .loses = "nothing"},
     [LAYOUT_PACKED] = {.name = "packed",
-                       .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8_SRGB},
+                       .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8},
                        .position_normal_bytes = 4,
                        .loses = "normals within half a degree facing the eye, some degrees at "
                                 "grazing angles, mirrored where they face away; distance within "
                                 "1/131,072 of its reach"},
     [LAYOUT_PACKED24] = {.name = "packed24",
-                         .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8_SRGB},
+                         .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8, GPU_FORMAT_RGBA8},
                          .position_normal_bytes = 8,
                          .loses = "normals as `packed`"},
     [LAYOUT_HALF5] = {.name = "half5",
@@ -50,7 +50,7 @@ const LayoutRow layout_table[LAYOUT_COUNT] = {
                                "eye: a world position would lose more), 11 bits of all else"},
     [LAYOUT_KILLZONE2] = {.name = "killzone2",
                           .targets = {GPU_FORMAT_RGBA8, GPU_FORMAT_RG16F, GPU_FORMAT_RGBA8,
-                                      GPU_FORMAT_RGBA8_SRGB},
+                                      GPU_FORMAT_RGBA8},
                           .position_normal_bytes = 4,
                           .loses = "the colour of highlights, whose lobe and whose material's "
                                    "diffuse lobe are the level's most common; power within 2 %; "

@@ -18,7 +18,8 @@ enum {
     CODING_OREN_NAYAR,
     CODING_LIGHT8,
     CODING_POWER8,
-    CODING_MOTION8
+    CODING_MOTION8,
+    CODING_ALBEDO8
 };
 
 typedef f32 Value[4];
@@ -265,4 +266,37 @@ TEST_GPU(coding, power_and_motion_in_bytes) {
     printf("    motion in bytes: off by %.4f of the picture at most\n", worst);
     assert_true(worst <= 0.0085);
     assert_true(fabsf(decoded[0][0]) < 1e-9f);
+}
+
+// The sRGB curve's inverse (IEC 61966-2-1).
+static f64 srgb_to_linear(f64 v) {
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+// Against what an sRGB target would lose: half a step between two of its bytes.
+TEST_GPU(coding, albedo_in_bytes) {
+    for (u32 i = 0; i < COUNT; i++)
+        for (u32 k = 0; k < 3; k++) {
+            f64 v = random_in(i, 13 + k, 0.0, 1.0);
+            values[i][k] = (f32)(v * v);
+        }
+    for (u32 k = 0; k < 3; k++) values[0][k] = 0.0f, values[1][k] = 1.0f, values[2][k] = 9.0f;
+    round_trip(CODING_ALBEDO8, GPU_FORMAT_RGBA8, 0);
+    f64 worst = 0, worst_srgb_steps = 0;
+    for (u32 i = 3; i < COUNT; i++)
+        for (u32 k = 0; k < 3; k++) {
+            f64 v = (f64)values[i][k], off = fabs(v - (f64)decoded[i][k]);
+            f64 code = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+            f64 byte = fmin(floor(code * 255.0), 254.0);
+            f64 step = srgb_to_linear((byte + 1.0) / 255.0) - srgb_to_linear(byte / 255.0);
+            worst = fmax(worst, off);
+            worst_srgb_steps = fmax(worst_srgb_steps, off / step);
+        }
+    printf("    albedo in bytes: off by %.5f at most, %.2f steps of an sRGB byte\n", worst,
+           worst_srgb_steps);
+    assert_true(worst <= 0.00394);         // half a step at white: 1 / 255
+    assert_true(worst_srgb_steps <= 0.75); // 0.5 is what an sRGB byte itself loses
+    for (u32 k = 0; k < 3; k++) {          // nothing, all and too much
+        assert_true(decoded[0][k] == 0.0f && decoded[1][k] == 1.0f && decoded[2][k] == 1.0f);
+    }
 }
