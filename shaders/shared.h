@@ -324,6 +324,7 @@ typedef struct MeshVertex {
 #define GI_DRAW_SMALL         8u  // triangles of few columns are wanted
 #define GI_DRAW_LARGE         16u // those of many are
 #define GI_DRAW_TWO_SIDED     32u
+#define GI_DRAW_WIDE          64u // by compute: a group a triangle, not an invocation
 #define GI_DRAW_BITS_SHIFT    8   // sum_bits, 4 bits
 #define GI_LARGE_COLUMNS      64  // a triangle whose box covers more columns of voxels is large
 

@@ -16,16 +16,21 @@
 // Columns of voxels that one invocation may walk: each takes a few iterations of loops, and the
 // software driver stops an invocation after 65,535, silently.
 #define COLUMNS_PER_INVOCATION 4096
-// Draws of so few triangles are rasterised whole: telling small from large would cost more.
-#define RASTER_TRIANGLES 256
-#define GROUP            64
-#define GROUPS_MAX       65535u
+// Draws of so few triangles, if large ones are among them, take a group of invocations each:
+// telling small from large, or rendering passes for them, would cost more.
+#define WIDE_TRIANGLES 256
+// Layers of so few words (64^3 voxels have 8,192) are ranked and listed by one dispatch, in which
+// each group counts all words before its own: work that grows with the square.
+#define RANK_AT_ONCE_WORDS 16384
+#define RANK_GROUP_RANKS   512 // gi_rank.comp
+#define GROUP              64
+#define GROUPS_MAX         65535u
 
 #define ALPHA_MODE_MASK 1 // AlphaMode of world/components.h, which nobody here sees
 
 typedef enum VoxelStep { STEP_MARK, STEP_ADD } VoxelStep;
 enum { SOLID_CROSS, SOLID_FILL };
-enum { RANK_BLOCKS, RANK_SCAN, RANK_WORDS };
+enum { RANK_BLOCKS, RANK_SCAN, RANK_WORDS, RANK_AND_LIST };
 enum { CLEAR_IMAGES, CLEAR_SOLIDS };
 
 // A layer that is being made.
@@ -155,6 +160,7 @@ static f32 edge_voxels(const Layer *layer, const VoxelDraw *d, f32 voxel_m, f32 
 typedef struct Ways {
     u32 raster, compute; // GI_DRAW_SMALL | GI_DRAW_LARGE, 0 = not this way
     u32 parts;           // groups that share a triangle, by compute
+    bool wide;           // all invocations of a group do
 } Ways;
 
 static Ways choose_ways(const Layer *layer, const VoxelDraw *d, u32 cascade) {
@@ -173,8 +179,8 @@ static Ways choose_ways(const Layer *layer, const VoxelDraw *d, u32 cascade) {
     }
     if ((edge + 3.0f) * (edge + 3.0f) <= GI_LARGE_COLUMNS)
         return (Ways){.compute = all, .parts = parts};
-    if ((u64)d->triangles * d->draw->instance_count <= RASTER_TRIANGLES)
-        return (Ways){.raster = all};
+    if ((u64)d->triangles * d->draw->instance_count <= WIDE_TRIANGLES)
+        return (Ways){.compute = all, .parts = (parts + GROUP - 1) / GROUP, .wide = true};
     return (Ways){.compute = GI_DRAW_SMALL, .parts = 1, .raster = GI_DRAW_LARGE};
 }
 
@@ -206,7 +212,8 @@ static void record_way(const Layer *layer, PipelineKind kind, VoxelStep step, u3
             GpuPipeline pipeline = pipeline_get(r, c->packet, kind, variant_of(&d, step));
             if (!pipeline.id) continue;
             u32 flags = sizes | cascade << GI_DRAW_CASCADE_SHIFT |
-                        (d.material->double_sided ? GI_DRAW_TWO_SIDED : 0);
+                        (d.material->double_sided ? GI_DRAW_TWO_SIDED : 0) |
+                        (ways.wide && !is_raster ? GI_DRAW_WIDE : 0);
             GiDrawRecord record = record_of(layer, &d, flags, window);
             gi_bind_build(c, pipeline, 0);
             gpu_cmd_bind_group(c->cmd, 1, render_material_group(r, d.material));
@@ -215,7 +222,9 @@ static void record_way(const Layer *layer, PipelineKind kind, VoxelStep step, u3
                 gpu_cmd_draw(c->cmd, d.triangles * 3, d.draw->instance_count, 0,
                              d.draw->first_instance);
             else
-                dispatch_many(c, (u64)d.triangles * d.draw->instance_count, ways.parts);
+                dispatch_many(c,
+                              (u64)d.triangles * d.draw->instance_count * (ways.wide ? GROUP : 1),
+                              ways.parts);
             r->stats.draw_calls++;
         }
 }
@@ -282,6 +291,19 @@ static void fill_solids(const Layer *layer) {
 static void rank_and_list(const Layer *layer) {
     const PassContext *c = layer->c;
     GiDrawRecord record = {.how = {layer->flags}};
+    if (layer_words(c) <= RANK_AT_ONCE_WORDS) {
+        u32 words = RANK_GROUP_RANKS * GI_RANK_WORDS; // of a group
+        to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_STORAGE_READ_COMPUTE);
+        to_usage(c, RESOURCE_GI_RANKS, GPU_USAGE_STORAGE_COMPUTE);
+        to_usage(c, RESOURCE_GI_COUNTERS, GPU_USAGE_STORAGE_COMPUTE);
+        to_usage(c, RESOURCE_GI_VOXELS, GPU_USAGE_STORAGE_COMPUTE);
+        if (!bind_step(c, PIPELINE_GI_RANK, RANK_AND_LIST, &record)) return;
+        gpu_cmd_dispatch(c->cmd, (layer_words(c) + words - 1) / words, 1, 1);
+        // From here on these are only read, by any stage.
+        to_usage(c, RESOURCE_GI_COUNTERS, GPU_USAGE_STORAGE_READ_COMPUTE);
+        to_usage(c, RESOURCE_GI_RANKS, GPU_USAGE_STORAGE_READ_COMPUTE);
+        return;
+    }
     u32 blocks = gi_rank_blocks((u64)layer_words(c) * 32);
     to_usage(c, RESOURCE_GI_MASKS, GPU_USAGE_STORAGE_READ_COMPUTE);
     to_usage(c, RESOURCE_GI_RANKS, GPU_USAGE_STORAGE_COMPUTE);
