@@ -48,21 +48,50 @@ layout(set = 0, binding = BINDING_PALETTE) uniform sampler2D palette;
 vec4 palette_texel(uint material, int member) {
     return texelFetch(palette, ivec2(member, int(material)), 0);
 }
-vec4 palette_albedo(uint material) {
-    return PALETTE_TEXTURE != 0u ? palette_texel(material, 0) : materials[material].albedo;
+#ifdef PALETTE_BY_LANES
+// Shaders of whole subgroups, all lanes on: each lane keeps a few materials, and one asks for those of
+// the others by shuffles. A buffer read by an index of each lane's own is a gather, 25 instructions a
+// float on the software driver; a shuffle is one.
+layout(constant_id = SPEC_PALETTE_LANES) const uint PALETTE_LANES = 0;
+vec4 palette_kept[PALETTE_LANES_CAP * 5];
+#define MEMBER(m, name)                                                                            \
+    palette_kept[i * 5u + m] = materials[min(i * gl_SubgroupSize + gl_SubgroupInvocationID,        \
+                                             uint(MATERIALS_CAP) - 1u)].name
+void palette_keep() {
+    [[unroll]] for (uint i = 0u; i < PALETTE_LANES; i++) {
+        MEMBER(0u, albedo);
+        MEMBER(1u, specular);
+        MEMBER(2u, emissive);
+        MEMBER(3u, lobes);
+        MEMBER(4u, extra);
+    }
 }
-vec4 palette_specular(uint material) {
-    return PALETTE_TEXTURE != 0u ? palette_texel(material, 1) : materials[material].specular;
+#undef MEMBER
+vec4 palette_of_lanes(uint material, uint member) {
+    uint lane = material % gl_SubgroupSize, of_lane = material / gl_SubgroupSize;
+    vec4 found = subgroupShuffle(palette_kept[member], lane);
+    [[unroll]] for (uint i = 1u; i < PALETTE_LANES; i++) {
+        vec4 other = subgroupShuffle(palette_kept[i * 5u + member], lane);
+        found = of_lane == i ? other : found;
+    }
+    return found;
 }
-vec4 palette_emissive(uint material) {
-    return PALETTE_TEXTURE != 0u ? palette_texel(material, 2) : materials[material].emissive;
-}
-vec4 palette_lobes(uint material) {
-    return PALETTE_TEXTURE != 0u ? palette_texel(material, 3) : materials[material].lobes;
-}
-vec4 palette_extra(uint material) {
-    return PALETTE_TEXTURE != 0u ? palette_texel(material, 4) : materials[material].extra;
-}
+#else
+const uint PALETTE_LANES = 0u;
+vec4 palette_of_lanes(uint material, uint member) { return vec4(0.0); }
+#endif
+#define PALETTE_MEMBER(name, member)                                                               \
+    vec4 palette_##name(uint material) {                                                           \
+        return PALETTE_TEXTURE != 0u ? palette_texel(material, member)                             \
+               : PALETTE_LANES != 0u ? palette_of_lanes(material, uint(member))                    \
+                                     : materials[material].name;                                   \
+    }
+PALETTE_MEMBER(albedo, 0)
+PALETTE_MEMBER(specular, 1)
+PALETTE_MEMBER(emissive, 2)
+PALETTE_MEMBER(lobes, 3)
+PALETTE_MEMBER(extra, 4)
+#undef PALETTE_MEMBER
 
 // Debug pictures: blue, cyan, green, yellow, red for 0..1, then to white at 2. The legends have the
 // same colours (heat_color of render/debug_views.c).

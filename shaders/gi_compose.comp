@@ -6,6 +6,7 @@
 // the subgroup: a lane may have many of them and its neighbours none, and tracing is dear.
 #extension GL_GOOGLE_include_directive : require
 #include "subgroups.glsl"
+#include "gi_screen.glsl"
 #include "gi_compose.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,14 +1,19 @@
 // gi_compose.glsl: what indirect light adds to the lit picture, and how much of that its ambient
 // occlusion leaves: (direct + strength (diffuse + specular)) ao + emissive = there * alpha + colour.
-// For gi_compose.comp and gi_compose_ms.frag.
+// For gi_compose.comp, gi_alone.comp, gi_compose_ms.frag and, as a part of shading, gi_block.glsl.
 //
 // Where fewer pixels are traced than there are, each one takes from the four traced ones about it
 // those that lie in its plane and face its way (joint bilateral upsampling, Kopf et al. 2007).
-// Where none fits, it is traced by itself.
+// Where none fits, it is traced by itself; the includer does that.
 #ifndef GI_COMPOSE_GLSL
 #define GI_COMPOSE_GLSL
-#include "gi_screen.glsl"
+#ifndef GI_SCREEN
+#define GI_SCREEN
+#endif
+#include "gbuffer.glsl"
+#include "gi.glsl"
 #include "gi_place.glsl"
+#include "gi_pixel.glsl"
 
 layout(set = 2, binding = BINDING_GI_TRACE_0) uniform sampler2D trace_0;
 layout(set = 2, binding = BINDING_GI_TRACE_1) uniform sampler2D trace_1;

@@ -6,6 +6,7 @@
 // pixel about it whose plane it lies in, and the pixel gets their mean. Samples of the sky do not
 // count: it is drawn over them later.
 #extension GL_GOOGLE_include_directive : require
+#include "gi_screen.glsl"
 #include "gi_compose.glsl"
 
 layout(set = 0, binding = BINDING_DEPTH_MS) uniform sampler2DMS depth_ms;

@@ -7,31 +7,9 @@
 #include "gi.glsl"
 #include "gi_cones.glsl"
 #include "gi_place.glsl"
+#include "gi_pixel.glsl"
 #include "gi_irradiance_lookup.glsl"
 #include "gi_probe_lookup.glsl"
-
-
-struct GiPixel {
-    vec4 diffuse;  // rgb without albedo, w ambient visibility
-    vec4 specular; // rgb without the specular colour, w 1 = traced
-};
-
-// Colour that a mirrored cone counts with. The lobe's share of a uniform light: its normalised form
-// is (n + 8) / (8 pi) (Akenine-Moller et al., Real-Time Rendering, 3rd ed., eq. 7.49); a mirror's
-// half vector is the normal, so that is where Fresnel's term is taken.
-vec3 gi_specular_color(Surface s) {
-    float whole = min(s.lobes.y * (8.0 * PI) / (s.power + 8.0), 1.0);
-    vec3 color = s.specular * (whole / max(s.lobes.y, 1e-6));
-    if ((BRDF_MASK & BRDF_MASK_FRESNEL) != 0u) {
-        float x = 1.0 - clamp(s.n_dot_v, 0.0, 1.0), x2 = x * x;
-        color += (vec3(whole) - color) * (x2 * x2 * x * s.fresnel);
-    }
-    return color;
-}
-
-bool gi_has_specular() {
-    return (GI_FEATURES & GI_FEATURE_SPECULAR) != 0u && (BRDF_MASK & 14u) != 0u;
-}
 
 // tan of half the aperture of the cone that stands for a highlight. A Phong lobe of power n keeps
 // 1 - 0.244 of its light within cos^(n + 1) = 0.244 (Uludag 2014, "Hi-Z screen-space cone-traced

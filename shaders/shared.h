@@ -82,21 +82,22 @@ typedef struct MeshVertex {
 #define BINDING_GI_MASKS       3  // uint[], storage: see BUILD_MASKS
 #define BINDING_GI_RANKS       4  // uint[], storage
 #define BINDING_GI_ATTRIBUTES  5  // uint[], storage
-#define BINDING_GI_FIRST_IMAGE 6
-#define BINDING_GI_BASE        6  // sampled 3D: radiance and opacity, one a voxel
-#define BINDING_GI_ATLAS       7  // sampled 3D with mips: six directions side by side along x
-#define BINDING_GI_ATLAS_NEAREST_MIP 8 // the same, the nearest mip alone
-#define BINDING_GI_IRRADIANCE  9  // sampled 3D: of voxels, see gi.glsl
-#define BINDING_GI_VISIBILITY  10 // sampled 3D: mean visibility of the lights
-#define BINDING_GI_PROBES      11 // sampled 3D: six directions side by side along x
-#define BINDING_GI_BRICKS      12 // sampled 3D: see BUILD_BRICKS
-#define BINDING_GI_TRACE_0     13 // sampled: indirect diffuse (without albedo), w ambient visibility
-#define BINDING_GI_TRACE_1     14 // sampled: indirect specular (without the specular colour)
-#define BINDING_GI_TRACE_RAW   15 // sampled: BINDING_GI_TRACE_0 before it is smoothed (dithered cones)
-#define BINDING_GI_TRACE_0_STORAGE 16 // the same, storage images rgba16f
-#define BINDING_GI_TRACE_1_STORAGE 17
-#define BINDING_GI_TRACE_RAW_STORAGE 18
-#define BINDING_GI_COUNT       19
+#define BINDING_GI_ALONE       6  // uint[], storage: GI_ALONE_*
+#define BINDING_GI_FIRST_IMAGE 7
+#define BINDING_GI_BASE        7  // sampled 3D: radiance and opacity, one a voxel
+#define BINDING_GI_ATLAS       8  // sampled 3D with mips: six directions side by side along x
+#define BINDING_GI_ATLAS_NEAREST_MIP 9 // the same, the nearest mip alone
+#define BINDING_GI_IRRADIANCE  10  // sampled 3D: of voxels, see gi.glsl
+#define BINDING_GI_VISIBILITY  11 // sampled 3D: mean visibility of the lights
+#define BINDING_GI_PROBES      12 // sampled 3D: six directions side by side along x
+#define BINDING_GI_BRICKS      13 // sampled 3D: see BUILD_BRICKS
+#define BINDING_GI_TRACE_0     14 // sampled: indirect diffuse (without albedo), w ambient visibility
+#define BINDING_GI_TRACE_1     15 // sampled: indirect specular (without the specular colour)
+#define BINDING_GI_TRACE_RAW   16 // sampled: BINDING_GI_TRACE_0 before it is smoothed (dithered cones)
+#define BINDING_GI_TRACE_0_STORAGE 17 // the same, storage images rgba16f
+#define BINDING_GI_TRACE_1_STORAGE 18
+#define BINDING_GI_TRACE_RAW_STORAGE 19
+#define BINDING_GI_COUNT       20
 // --- Set 0 of passes that make the voxels (they do not see the frame's set; set 1 as ever). ---
 #define BUILD_GI            0  // GiRecord, uniform
 #define BUILD_FRAME         1  // FrameRecord, uniform
@@ -178,7 +179,8 @@ typedef struct MeshVertex {
 #define SPEC_GI_TRACED     39 // bit 0: cones, bit 1: visibility volume; of lights with traced shadows
 #define SPEC_GI_BRICKS     40 // 1 = the base volume has bricks where voxels are, 0 = it is whole
 #define SPEC_LIST_KINDS    41 // LIST_KIND_*: what shading by lists must be ready for
-#define SPEC_COUNT         42
+#define SPEC_PALETTE_LANES 42 // tiled: materials that a lane keeps for its subgroup, 0 = none: too many
+#define SPEC_COUNT         43
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
 #define GBUFFER_LAYOUT_LEAN       0
@@ -225,6 +227,7 @@ typedef struct MeshVertex {
 #define LIST_KIND_DIFFUSE 2 // there are lights without a highlight, and surfaces that show one
 #define MULTIPASS_LIGHTS  8 // lights of a group of path `multipass`
 #define MATERIALS_CAP     256
+#define PALETTE_LANES_CAP 4 // see SPEC_PALETTE_LANES
 #define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
 #define LIGHT_BLOCK_CAP   4096
@@ -259,6 +262,12 @@ typedef struct MeshVertex {
 #define GI_FEATURE_SPECULAR 1
 #define GI_FEATURE_AO       2
 #define GI_FEATURE_DITHER   4
+// Pixels to which no traced one is alike (gi_tiled.comp): how many there are; dispatch arguments; then
+// x | y << 16 of each.
+#define GI_ALONE_COUNT  0
+#define GI_ALONE_GROUPS 1 // 3 words
+#define GI_ALONE_FIRST  4
+#define GI_ALONE_GROUP  128 // pixels of a group: even if all of 3840 x 2160 are, 65,535 groups do
 // SPEC_GI_VISIBILITY, beside a bit for each VoxelShadow.
 #define GI_VISIBILITY_SOLID 16 // there is a layer of solid voxels, which rays meet
 #define GI_VISIBILITY_KEPT  32 // the mean over a voxel's lights is wanted

@@ -24,7 +24,8 @@ typedef struct GiScene {
 #define GI_SCENE_CORNELL                                                                           \
     { "cornell", "data/levels/cornell.toml", "tall_box short_box" }
 
-// Steps of a frame by what they do, ms (medians), and the passes that each is made of.
+// Steps of a frame by what they do, ms (medians), and the passes that each is made of. Where indirect
+// light is added while tiles are shaded (gi_tiled_pass), that is in "lighting".
 #define GI_STEPS(X)                                                                                \
     X(static_voxels, "static voxelise", "voxelise static")                                         \
     X(dynamic_voxels, "clear and voxelise dynamic", "voxelise dynamic")                            \
@@ -35,7 +36,7 @@ typedef struct GiScene {
     X(gather, "probes or irradiance", "probes|voxel irradiance")                                   \
     X(trace, "cones", "gi trace")                                                                  \
     X(shadows, "traced lights", "gi traced lights")                                                \
-    X(compose, "compose", "gi compose|gi compose of samples")
+    X(compose, "compose", "gi compose|gi compose of samples|gi alone")
 typedef enum GiStep {
 #define X(id, title, passes) GI_STEP_##id,
     GI_STEPS(X)

@@ -216,7 +216,8 @@ static bool buffer_ensure(Renderer *renderer, RenderResource id, u64 size, bool 
         gpu_create_buffer(renderer->gpu, &(GpuBufferDesc){.label = resource_labels[id],
                                                           .heap = "gi",
                                                           .size = size,
-                                                          .indirect = id == RESOURCE_GI_COUNTERS});
+                                                          .indirect = id == RESOURCE_GI_COUNTERS ||
+                                                                      id == RESOURCE_GI_ALONE});
     renderer->usage[id] = GPU_USAGE_NONE;
     renderer->frame_group_stale = true;
     *made = true;
@@ -264,6 +265,15 @@ static u32 slots_at_most(const Renderer *renderer, const GiParams *params) {
     return (u32)MIN(info->max_storage_buffer_size / bytes, (u64)info->max_groups_x * 64);
 }
 
+// Of a list of pixels, see GI_ALONE_FIRST: room for all.
+static u64 alone_bytes(const Renderer *renderer, const Packet *packet) {
+    bool is_used = packet->settings.path == PATH_TILED_DEFERRED &&
+                   packet->gi.params.resolution != GI_RESOLUTION_FULL &&
+                   gpu_info(renderer->gpu)->is_software;
+    u64 pixels = is_used ? (u64)packet->width_px * packet->height_px : 0;
+    return (GI_ALONE_FIRST + pixels) * sizeof(u32);
+}
+
 static bool resize(Renderer *renderer, const Packet *packet) {
     GiState *gi = &renderer->gi;
     const GiParams *params = &packet->gi.params;
@@ -282,10 +292,12 @@ static bool resize(Renderer *renderer, const Packet *packet) {
     for (u32 id = RESOURCE_FIRST_GI; id < RESOURCE_FIRST_BUFFER && ok; id++)
         ok = texture_ensure(renderer, packet, (RenderResource)id, &made);
     u64 voxels = (u64)record->dims[0] * record->dims[1] * record->dims[2] * record->dims[3];
-    for (u32 id = RESOURCE_FIRST_GI_BUFFER; id < RESOURCE_COUNT && ok; id++)
+    for (u32 id = RESOURCE_FIRST_GI_BUFFER; id < RESOURCE_GI_ALONE && ok; id++)
         ok =
             buffer_ensure(renderer, (RenderResource)id,
                           gi_buffer_bytes((RenderResource)id, voxels, gi->slot_cap, params), &made);
+    bool ignored; // no voxel hangs on it
+    ok = ok && buffer_ensure(renderer, RESOURCE_GI_ALONE, alone_bytes(renderer, packet), &ignored);
     memcpy(gi->dims, record->dims, sizeof gi->dims);
     memcpy(gi->atlas, record->atlas, sizeof gi->atlas);
     gi->format = params->format;
@@ -464,6 +476,7 @@ static void bind_screen(const Renderer *r, GpuBinding *b) {
     b[BINDING_GI_MASKS] = device_buffer(r, RESOURCE_GI_MASKS);
     b[BINDING_GI_RANKS] = device_buffer(r, RESOURCE_GI_RANKS);
     b[BINDING_GI_ATTRIBUTES] = device_buffer(r, RESOURCE_GI_ATTRIBUTES);
+    b[BINDING_GI_ALONE] = device_buffer(r, RESOURCE_GI_ALONE);
     b[BINDING_GI_BASE] = texture(r, RESOURCE_GI_BASE, linear);
     b[BINDING_GI_ATLAS] = texture(r, RESOURCE_GI_ATLAS, linear);
     b[BINDING_GI_ATLAS_NEAREST_MIP] = texture(r, RESOURCE_GI_ATLAS, r->gi_sampler_nearest_mip);

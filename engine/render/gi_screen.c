@@ -53,14 +53,26 @@ static void by_traced_pixel(const PassContext *c, PipelineKind kind) {
     gpu_cmd_dispatch(c->cmd, ((u32)gi->trace[0] + 7) / 8, ((u32)gi->trace[1] + 7) / 8, 1);
 }
 
-static void trace_record(const PassContext *c) { by_traced_pixel(c, PIPELINE_GI_TRACE); }
+// No pixel is alone before gi_tiled_pass says so.
+static void clear_alone(const PassContext *c) {
+    const u32 word = sizeof(u32);
+    GpuBuffer alone = c->renderer->device_buffers[RESOURCE_GI_ALONE];
+    gpu_cmd_fill_buffer(c->cmd, alone, GI_ALONE_COUNT * word, 2 * word, 0);
+    gpu_cmd_fill_buffer(c->cmd, alone, (GI_ALONE_GROUPS + 1) * word, 2 * word, 1);
+}
+
+static void trace_record(const PassContext *c) {
+    if (gi_shades_tiles(c)) clear_alone(c);
+    by_traced_pixel(c, PIPELINE_GI_TRACE);
+}
 const Pass gi_trace_pass = {"gi trace",
                             {OVERWRITE(GI_TRACE_0, STORAGE_COMPUTE),
                              OVERWRITE(GI_TRACE_1, STORAGE_COMPUTE),
                              OVERWRITE(GI_TRACE_RAW, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
                              USE(DEPTH, SAMPLED_COMPUTE), USE_VOXEL_LIGHT(SAMPLED_COMPUTE),
-                             USE(GI_IRRADIANCE, SAMPLED_COMPUTE), USE(GI_PROBES, SAMPLED_COMPUTE)},
-                            14,
+                             USE(GI_IRRADIANCE, SAMPLED_COMPUTE), USE(GI_PROBES, SAMPLED_COMPUTE),
+                             USE(GI_ALONE, COPY_TARGET)},
+                            15,
                             trace_record,
                             gi_is_on};
 
@@ -78,7 +90,7 @@ const Pass gi_smooth_pass = {"gi smooth",
 
 // With one sample a pixel by squares of pixels between the same traced ones.
 static bool compose_needed(const PassContext *c) {
-    return gi_is_on(c) && c->renderer->samples == 1;
+    return gi_is_on(c) && c->renderer->samples == 1 && !gi_shades_tiles(c);
 }
 static void compose_record(const PassContext *c) {
     GpuPipeline pipeline =
@@ -100,6 +112,48 @@ const Pass gi_compose_pass = {
     14,
     compose_record,
     compose_needed};
+
+// As a part of shading tiles, where the driver is such that reading the G-buffer and the picture
+// again costs more than the sum itself. Lights with traced shadows come between the two.
+bool gi_shades_tiles(const PassContext *c) {
+    const GpuInfo *info = gpu_info(c->renderer->gpu);
+    return gi_is_on(c) && c->packet->settings.path == PATH_TILED_DEFERRED && info->is_software &&
+           info->subgroup_size * tiled_pixels_per_lane(c->renderer) == 64 &&
+           c->renderer->samples == 1 && !traced_needed(c);
+}
+
+static void tiled_record(const PassContext *c) {
+    warm_up_list_kinds(c, PIPELINE_GI_TILED);
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_TILED, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    gi_bind_screen(c, pipeline);
+    gpu_cmd_dispatch(c->cmd, (c->packet->width_px + 7) / 8, (c->packet->height_px + 7) / 8, 1);
+}
+const Pass gi_tiled_pass = {"lighting",
+                            {OVERWRITE(HDR, STORAGE_COMPUTE), USE_GBUFFER(SAMPLED_COMPUTE),
+                             USE(DEPTH, SAMPLED_COMPUTE), USE(SHADOW_MAP, SAMPLED_COMPUTE),
+                             USE_LISTS(STORAGE_READ_COMPUTE), USE(GI_TRACE_0, SAMPLED_COMPUTE),
+                             USE(GI_TRACE_1, SAMPLED_COMPUTE), USE(GI_ALONE, STORAGE_COMPUTE)},
+                            16,
+                            tiled_record,
+                            gi_shades_tiles};
+
+static bool alone_needed(const PassContext *c) {
+    return gi_shades_tiles(c) && c->packet->gi.params.resolution != GI_RESOLUTION_FULL;
+}
+static void alone_record(const PassContext *c) {
+    GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_GI_ALONE, PIPELINE_PLAIN);
+    if (!pipeline.id) return;
+    gi_bind_screen(c, pipeline);
+    gpu_cmd_dispatch_indirect(c->cmd, c->renderer->device_buffers[RESOURCE_GI_ALONE],
+                              GI_ALONE_GROUPS * sizeof(u32));
+}
+const Pass gi_alone_pass = {"gi alone",
+                            {USE(HDR, STORAGE_COMPUTE), USE(DEPTH, SAMPLED_COMPUTE),
+                             COMPOSE_READS(SAMPLED_COMPUTE), USE(GI_ALONE, INDIRECT)},
+                            15,
+                            alone_record,
+                            alone_needed};
 
 static bool compose_ms_needed(const PassContext *c) {
     return gi_is_on(c) && c->renderer->samples > 1;

@@ -83,7 +83,10 @@ extern const Pass gi_report_pass;
 // gi_screen.c: from lit surfaces to such with indirect light. Forward paths have no G-buffer of
 // their own: gi_gbuffer_pass draws one.
 extern const Pass gi_gbuffer_pass, gi_traced_pass, gi_trace_pass, gi_smooth_pass, gi_compose_pass,
-    gi_compose_ms_pass;
+    gi_compose_ms_pass, gi_tiled_pass, gi_alone_pass;
+// Is the compose pass a part of gi_tiled_pass, which then stands in for tiled_pass?
+bool gi_shades_tiles(const PassContext *c);
+u32 tiled_pixels_per_lane(const Renderer *renderer); // pipelines.c
 #define GI_SCREEN_PASSES                                                                           \
     &gi_traced_pass, &gi_trace_pass, &gi_smooth_pass, &gi_compose_pass, &gi_compose_ms_pass
 // gi_views.c

@@ -47,6 +47,16 @@ const Pass gbuffer_pass = {"gbuffer",
 
 // --- What is drawn over the lit picture: sky, textured emission, blended surfaces ---
 
+static bool over_needed(const PassContext *c) {
+    const Packet *packet = c->packet;
+    const f32 *zenith = packet->frame.sky_zenith, *horizon = packet->frame.sky_horizon;
+    // All paths leave black where there is no surface.
+    bool has_sky = zenith[0] != 0.0f || zenith[1] != 0.0f || zenith[2] != 0.0f ||
+                   zenith[3] != 0.0f || horizon[0] != 0.0f || horizon[1] != 0.0f ||
+                   horizon[2] != 0.0f;
+    return has_sky || packet->emissive_draws.count || packet->blend_draws.count ||
+           c->renderer->is_warming_up;
+}
 static void over_record(const PassContext *c) {
     begin(c, &(GpuRendering){.targets = {color_target(c, false)},
                              .target_count = 1,
@@ -65,4 +75,4 @@ const Pass over_pass = {"sky and glow",
                          USE(GI_PROBES, SAMPLED_FRAGMENT)},
                         10,
                         over_record,
-                        NULL};
+                        over_needed};

@@ -54,11 +54,15 @@ void warm_up_list_kinds(const PassContext *c, PipelineKind kind) {
         PipelineVariant variant = {.list_kinds = kinds};
         GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, kind, variant);
         if (!pipeline.id) continue;
-        bind_frame(c, pipeline);
+        if (kind == PIPELINE_GI_TILED)
+            gi_bind_screen(c, pipeline);
+        else
+            bind_frame(c, pipeline);
         gpu_cmd_dispatch(c->cmd, 1, 1, 1);
     }
 }
 
+static bool tiled_needed(const PassContext *c) { return !gi_shades_tiles(c); }
 static void tiled_record(const PassContext *c) {
     warm_up_list_kinds(c, PIPELINE_TILED);
     GpuPipeline pipeline = pipeline_get(c->renderer, c->packet, PIPELINE_TILED, PIPELINE_PLAIN);
@@ -72,4 +76,4 @@ const Pass tiled_pass = {"lighting",
                           USE_LISTS(STORAGE_READ_COMPUTE)},
                          13,
                          tiled_record,
-                         NULL};
+                         tiled_needed};

@@ -37,6 +37,9 @@ const GpuFormat resource_formats[RESOURCE_COUNT] = {
 #define SPEC_SHADE_LISTS                                                                           \
     (SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_DEVICE_LISTS) | SPEC_BIT(SPEC_CLUSTERED) |          \
      SPEC_BIT(SPEC_LIST_KINDS))
+#define SPEC_TILED                                                                                 \
+    (SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS | SPEC_BIT(SPEC_SUBGROUP_CULL) |         \
+     SPEC_BIT(SPEC_PIXELS_PER_LANE) | SPEC_BIT(SPEC_TILED_GROUP) | SPEC_BIT(SPEC_PALETTE_LANES))
 // What a pass needs to read lights by lists.
 #define SPEC_LISTS                                                                                 \
     (SPEC_BIT(SPEC_CELL_LISTS) | SPEC_BIT(SPEC_TILE_SHIFT) | SPEC_BIT(SPEC_CLUSTERED) |            \
@@ -218,11 +221,7 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                    .targets = {RESOURCE_HDR},
                                    .target_count = 1,
                                    .cull = GPU_CULL_NONE},
-    [PIPELINE_TILED] = {.label = "tiled",
-                        .compute = "tiled.comp",
-                        .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS |
-                                     SPEC_BIT(SPEC_SUBGROUP_CULL) | SPEC_BIT(SPEC_PIXELS_PER_LANE) |
-                                     SPEC_BIT(SPEC_TILED_GROUP)},
+    [PIPELINE_TILED] = {.label = "tiled", .compute = "tiled.comp", .spec_mask = SPEC_TILED},
     [PIPELINE_CLUSTERED] = {.label = "clustered",
                             .compute = "clustered.comp",
                             .spec_mask = SPEC_LIGHTING | SPEC_READ_GBUFFER | SPEC_SHADE_LISTS},
@@ -468,6 +467,12 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
     [PIPELINE_GI_COMPOSE] = {.label = "gi compose",
                              .compute = "gi_compose.comp",
                              .spec_mask = SPEC_READ_VOXELS},
+    [PIPELINE_GI_TILED] = {.label = "tiled with gi",
+                           .compute = "gi_tiled.comp",
+                           .spec_mask = SPEC_TILED | SPEC_READ_VOXELS},
+    [PIPELINE_GI_ALONE] = {.label = "gi of pixels alone",
+                           .compute = "gi_alone.comp",
+                           .spec_mask = SPEC_READ_VOXELS},
     [PIPELINE_GI_COMPOSE_MS] = {.label = "gi compose of samples",
                                 .vertex = "surfaces.vert",
                                 .fragment = "gi_compose_ms.frag",
@@ -553,8 +558,15 @@ static u64 longest_list(const Packet *packet) {
 }
 
 // Of the 8 x 8 that a subgroup's cull is for.
-static u32 tiled_pixels_per_lane(const Renderer *renderer) {
+u32 tiled_pixels_per_lane(const Renderer *renderer) {
     return CLAMP(64 / MAX(gpu_info(renderer->gpu)->subgroup_size, 1), 1, 8);
+}
+
+// Materials that each lane of a subgroup keeps. A level's, not a frame's: all that there are.
+static u32 palette_lanes(const Renderer *renderer, const Packet *packet) {
+    u32 lanes = MAX(gpu_info(renderer->gpu)->subgroup_size, 1);
+    u32 count = (packet->materials.count + lanes - 1) / lanes;
+    return gpu_info(renderer->gpu)->is_software && count <= PALETTE_LANES_CAP ? count : 0;
 }
 
 // LIST_KIND_* of a packet; `wanted` beside those. Only the tiled path cares about long lists.
@@ -564,7 +576,7 @@ static u32 list_kinds(const Packet *packet, PipelineKind kind, u32 wanted) {
     if (longest_list(packet) > SURVIVORS_CAP) kinds |= LIST_KIND_LONG;
     if (frame->counts3[0] < frame->counts[0] || frame->counts3[1] < frame->counts[1])
         kinds |= LIST_KIND_DIFFUSE;
-    if (kind != PIPELINE_TILED) kinds &= ~(u32)LIST_KIND_LONG;
+    if (kind != PIPELINE_TILED && kind != PIPELINE_GI_TILED) kinds &= ~(u32)LIST_KIND_LONG;
     if (!(packet->brdf_mask & BRDF_MASK_HIGHLIGHTS)) kinds &= ~(u32)LIST_KIND_DIFFUSE;
     return kinds;
 }
@@ -614,6 +626,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_TILED_GROUP] = 64 / pixels_per_lane,
         [SPEC_DIRECTIONALS] = packet->frame.counts[2],
         [SPEC_LIGHT_BLOCKS] = packet_fits_light_blocks(packet),
+        [SPEC_PALETTE_LANES] = palette_lanes(renderer, packet),
         [SPEC_LIST_KINDS] = list_kinds(packet, kind, variant.list_kinds),
         [SPEC_GI_DIRECTIONS] = gi->filter == GI_FILTER_ISOTROPIC ? 1 : 6,
         [SPEC_GI_FACES] = gi->faces,

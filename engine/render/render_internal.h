@@ -48,7 +48,8 @@
     X(GI_ACCUMULATORS, "gi accumulators", GPU_FORMAT_NONE)                                         \
     X(GI_RADIANCE, "gi radiance", GPU_FORMAT_NONE)                                                 \
     X(GI_RADIANCE_2, "gi radiance 2", GPU_FORMAT_NONE)                                             \
-    X(GI_COUNTERS, "gi counters", GPU_FORMAT_NONE)
+    X(GI_COUNTERS, "gi counters", GPU_FORMAT_NONE)                                                 \
+    X(GI_ALONE, "gi alone", GPU_FORMAT_NONE)
 typedef enum RenderResource {
 #define X(id, ...) RESOURCE_##id,
     RENDER_RESOURCES(X)
@@ -168,6 +169,8 @@ typedef enum PipelineKind {
     PIPELINE_GI_TRACE,
     PIPELINE_GI_SMOOTH, // of dithered cones
     PIPELINE_GI_COMPOSE,
+    PIPELINE_GI_TILED, // PIPELINE_TILED and it in one
+    PIPELINE_GI_ALONE,
     PIPELINE_GI_COMPOSE_MS, // of several samples a pixel
     PIPELINE_GI_VIEW_VOXELS,
     PIPELINE_GI_VIEW_PROBES,

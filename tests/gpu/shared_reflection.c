@@ -117,6 +117,7 @@ static const struct {
     {"GiVoxelBuffer", 0, BUILD_VOXELS},
     {"GiAttributeBuffer", 0, BUILD_ATTRIBUTES},
     {"GiAttributeBuffer", 2, BINDING_GI_ATTRIBUTES},
+    {"GiAloneBuffer", 2, BINDING_GI_ALONE},
     {"GiAccumulatorBuffer", 0, BUILD_ACCUMULATORS},
     {"GiRadianceBuffer", 0, BUILD_RADIANCE},
     {"GiRadiance2Buffer", 0, BUILD_RADIANCE_2},
