@@ -228,7 +228,7 @@ typedef struct MeshVertex {
 #define MULTIPASS_LIGHTS  8 // lights of a group of path `multipass`
 #define MATERIALS_CAP     256
 #define PALETTE_LANES_CAP 4 // see SPEC_PALETTE_LANES
-#define MESH_LODS_CAP     4 // levels of detail of a mesh, with the full one
+#define MESH_LODS_CAP     8 // levels of detail of a mesh, with the full one
 // 64 KiB of uniform buffer, what every device offers.
 #define LIGHT_BLOCK_CAP   4096
 #define SPOT_BLOCK_CAP    2048

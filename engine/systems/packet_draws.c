@@ -171,13 +171,13 @@ static SortItem *radix_sort(SortItem *items, SortItem *spare, u32 count) {
     return items;
 }
 
-// Key, from the lowest bit: entity index, mesh (16 bits), level of detail (2), material (9), vertex
+// Key, from the lowest bit: entity index, mesh (16 bits), level of detail (3), material (9), vertex
 // lighting (2), band of distance (4), alpha mode (2). Blended: entity index, distance (32,
 // inverted; the bits of a non-negative f32 sort like it), alpha mode.
 enum {
     KEY_MESH = ENTITY_INDEX_BITS,
     KEY_LOD = KEY_MESH + 16,
-    KEY_SURFACE = KEY_LOD + 2,
+    KEY_SURFACE = KEY_LOD + 3,
     KEY_VERTEX = KEY_SURFACE + 9,
     KEY_BAND = KEY_VERTEX + 2,
     KEY_ALPHA = ENTITY_INDEX_BITS + 34,
@@ -186,7 +186,7 @@ enum {
     VOXEL_KEY_MATERIAL = ENTITY_INDEX_BITS,
     VOXEL_KEY_MESH = VOXEL_KEY_MATERIAL + 9
 };
-_Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9 && MESH_LODS_CAP <= 4 &&
+_Static_assert(ASSET_MESHES_MAX <= 1u << 16 && MATERIALS_CAP <= 1u << 9 && MESH_LODS_CAP <= 8 &&
                    KEY_BAND + 4 <= KEY_ALPHA && KEY_ALPHA + 2 <= 64,
                "key fields");
 
@@ -197,6 +197,24 @@ static f32 sphere_distance(const DrawableTable *d, u32 row, const PacketView *vi
     Vec3 to = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
                d->bounds_z[row] - view->position.z};
     return vec3_length(to) - d->bounds_radius[row];
+}
+
+// From the eye to the nearest point of a drawable, as far as its sphere and the world's box around
+// its mesh tell, m: long thin things are farther than their spheres.
+static f32 nearest_distance(const DrawableTable *d, u32 row, const Mesh *mesh,
+                            const PacketView *view, f32 to_sphere) {
+    f32 m[12], squared = 0.0f;
+    columns_get_mat34(&d->w00, row, m);
+    Vec3 half = vec3_scale(vec3_sub(mesh->max, mesh->min), 0.5f);
+    f32 to[3] = {d->bounds_x[row] - view->position.x, d->bounds_y[row] - view->position.y,
+                 d->bounds_z[row] - view->position.z};
+    for (u32 axis = 0; axis < 3; axis++) {
+        const f32 *w = &m[4 * axis];
+        f32 extent = fabsf(w[0]) * half.x + fabsf(w[1]) * half.y + fabsf(w[2]) * half.z;
+        f32 gap = MAX(fabsf(to[axis]) - extent, 0.0f);
+        squared += gap * gap;
+    }
+    return MAX(sqrtf(squared), to_sphere);
 }
 
 // The coarsest level whose error in the world is no larger. Errors never fall. Nothing forgiven is
@@ -277,7 +295,8 @@ DrawLists packet_collect_draws(const PacketBuildDesc *desc, const PacketView *vi
         f32 distance = sphere_distance(d, row, view), radius = d->bounds_radius[row];
         // The sphere's growth from mesh to world is the largest factor on any length.
         f32 world_scale = mesh->radius > 0.0f ? radius / mesh->radius : 1.0f;
-        f32 error_m = lod_error_m(desc->settings.lod_error_px, distance, view, shadow);
+        f32 nearest = shadow ? 0.0f : nearest_distance(d, row, mesh, view, distance);
+        f32 error_m = lod_error_m(desc->settings.lod_error_px, nearest, view, shadow);
         u32 lod = choose_lod(mesh, world_scale, error_m);
 
         u64 key = ENTITY_INDEX(d->table.entity[row]);

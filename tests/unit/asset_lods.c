@@ -92,20 +92,100 @@ TEST(asset_lods, small_meshes_have_one_level) {
     fixture_close(f);
 }
 
-TEST(asset_lods, rims_stay_and_the_same_mesh_gives_the_same_levels) {
+// Squared distance of a point from a triangle: from its plane where the point is above it, else
+// from its edges.
+static f64 triangle_distance2(const f64 t[3][3], const f64 p[3]) {
+    f64 e[3][3], n[3], best = INFINITY;
+    bool above = true;
+    for (u32 k = 0; k < 3; k++)
+        for (u32 a = 0; a < 3; a++) e[k][a] = t[(k + 1) % 3][a] - t[k][a];
+    for (u32 a = 0; a < 3; a++)
+        n[a] = e[0][(a + 1) % 3] * e[1][(a + 2) % 3] - e[0][(a + 2) % 3] * e[1][(a + 1) % 3];
+    f64 n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], height = 0;
+    for (u32 k = 0; k < 3; k++) {
+        f64 d[3], along = 0, length2 = 0, side = 0, distance2 = 0;
+        for (u32 a = 0; a < 3; a++) d[a] = p[a] - t[k][a];
+        for (u32 a = 0; a < 3; a++) {
+            along += d[a] * e[k][a], length2 += e[k][a] * e[k][a];
+            side +=
+                n[a] * (e[k][(a + 1) % 3] * d[(a + 2) % 3] - e[k][(a + 2) % 3] * d[(a + 1) % 3]);
+        }
+        above = above && side >= 0;
+        f64 at = length2 > 0 ? CLAMP(along / length2, 0.0, 1.0) : 0.0;
+        for (u32 a = 0; a < 3; a++) distance2 += (d[a] - at * e[k][a]) * (d[a] - at * e[k][a]);
+        best = MIN(best, distance2);
+        if (k == 0) height = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+    }
+    return above && n2 > 0 ? height * height / n2 : best;
+}
+
+// Levels remember only some of the vertices that are gone.
+#define FORGOTTEN 1.5
+
+TEST(asset_lods, no_vertex_is_farther_from_a_level_than_it_says) {
+    AssetFixture *f = fixture_open();
+    const Shape shapes[] = {SHAPE_SPHERE, SHAPE_TORUS, SHAPE_CYLINDER, SHAPE_CONE};
+    for (u32 s = 0; s < COUNT_OF(shapes); s++) {
+        const Mesh *mesh =
+            shape_mesh(f, (ShapeDesc){.shape = shapes[s], .segments = 24, .rings = 12});
+        assert_true(mesh->lod_count >= 2);
+        for (u32 i = 1; i < mesh->lod_count; i++) {
+            const MeshLod *lod = &mesh->lods[i];
+            f64 worst = 0;
+            for (u32 v = 0; v < mesh->vertex_count; v++) {
+                f64 p[3], t[3][3], nearest = INFINITY;
+                for (u32 a = 0; a < 3; a++) p[a] = mesh->vertices[v].position[a];
+                for (u32 k = 0; k < lod->index_count; k += 3) {
+                    for (u32 c = 0; c < 9; c++)
+                        t[c / 3][c % 3] =
+                            mesh->vertices[mesh->indices[lod->first_index + k + c / 3]]
+                                .position[c % 3];
+                    nearest = MIN(nearest, triangle_distance2(t, p));
+                }
+                worst = MAX(worst, nearest);
+            }
+            if (sqrt(worst) > FORGOTTEN * lod->error + 1e-6)
+                fail_msg("%s level %u: %g m away, %g said", shape_names[shapes[s]], i, sqrt(worst),
+                         (f64)lod->error);
+        }
+    }
+    fixture_close(f);
+}
+
+// Corners keep the normal of their own side of an edge.
+TEST(asset_lods, hard_edges_stay_hard) {
+    AssetFixture *f = fixture_open();
+    const Mesh *mesh = shape_mesh(f, (ShapeDesc){.shape = SHAPE_CYLINDER, .segments = 48});
+    assert_true(mesh->lod_count >= 3);
+    for (u32 i = 0; i < mesh->lod_count; i++)
+        for (u32 k = 0; k < mesh->lods[i].index_count; k += 3) {
+            const u32 *corners = &mesh->indices[mesh->lods[i].first_index + k];
+            Vec3 p[3];
+            for (u32 c = 0; c < 3; c++) memcpy(&p[c], mesh->vertices[corners[c]].position, 12);
+            Vec3 flat = vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
+            for (u32 c = 0; c < 3; c++)
+                assert_true(vec3_dot(flat, asset_unpack_normal(mesh->vertices[corners[c]].normal)) >
+                            0.6f);
+        }
+    fixture_close(f);
+}
+
+TEST(asset_lods, rims_keep_their_line_and_the_same_mesh_gives_the_same_levels) {
     AssetFixture *f = fixture_open();
     const Mesh *a = shape_mesh(f, (ShapeDesc){.shape = SHAPE_PLANE, .segments = 16});
     assert_ranges(a);
     assert_true(a->lod_count >= 2 && a->lods[1].error < 1e-4f);
-    for (u32 i = 0; i < a->lod_count; i++) {
-        u32 rim = 0; // edges of the full mesh along x = -0.5
-        for (u32 k = 0; k < a->lods[i].index_count; k++) {
-            u32 at = a->lods[i].first_index + k;
-            const f32 *p = a->vertices[a->indices[at]].position,
-                      *q = a->vertices[a->indices[k % 3 == 2 ? at - 2 : at + 1]].position;
-            rim += p[0] == -0.5f && q[0] == -0.5f && fabsf(p[2] - q[2]) < 0.07f;
+    for (u32 i = 0; i < a->lod_count && a->lods[i].error < 1e-4f; i++) {
+        f64 area = 0; // a plane of one square metre, whole and without folds
+        for (u32 k = 0; k < a->lods[i].index_count; k += 3) {
+            const u32 *c = &a->indices[a->lods[i].first_index + k];
+            const f32 *p = a->vertices[c[0]].position, *q = a->vertices[c[1]].position,
+                      *r = a->vertices[c[2]].position;
+            f64 twice = (f64)(q[2] - p[2]) * (r[0] - p[0]) - (f64)(q[0] - p[0]) * (r[2] - p[2]);
+            assert_true(twice > 0);
+            area += 0.5 * twice;
         }
-        assert_int_equal(rim, 16);
+        assert_true(fabs(area - 1) < 1e-5);
     }
     u32 id = asset_add_mesh(&f->store, a->vertices, a->vertex_count, a->indices, a->index_count);
     const Mesh *b = &f->store.meshes[id];

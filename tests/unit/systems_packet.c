@@ -96,8 +96,9 @@ TEST(systems_packet, every_visible_instance_is_drawn_once_in_order) {
     systems_fixture_destroy(f);
 }
 
-// The coarsest level whose error, seen from the nearest point of the bounding sphere, is small
-// enough; from the matrices alone, level by level.
+// The coarsest level whose error, seen from the nearest point of the bounding sphere or of the box
+// around the corners of the mesh's box, whichever is farther, is small enough; from the matrices
+// alone, level by level.
 static u32 naive_lod(const Mesh *mesh, const InstanceRecord *r, const Packet *p, f64 error_px,
                      f64 *slack) {
     f64 center[3], to = 0, scale = 0;
@@ -109,7 +110,21 @@ static u32 naive_lod(const Mesh *mesh, const InstanceRecord *r, const Packet *p,
         for (u32 b = 0; b < 3; b++) column += (f64)r->world[b][a] * r->world[b][a];
         scale = MAX(scale, sqrt(column));
     }
+    f64 lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (u32 corner = 0; corner < 8; corner++)
+        for (u32 a = 0; a < 3; a++) {
+            f64 at = r->world[a][0] * (corner & 1 ? mesh->max.x : mesh->min.x) +
+                     r->world[a][1] * (corner & 2 ? mesh->max.y : mesh->min.y) +
+                     r->world[a][2] * (corner & 4 ? mesh->max.z : mesh->min.z) + r->world[a][3];
+            lo[a] = MIN(lo[a], at), hi[a] = MAX(hi[a], at);
+        }
+    f64 to_box = 0;
+    for (u32 a = 0; a < 3; a++) {
+        f64 gap = MAX(MAX(lo[a] - p->frame.camera[a], p->frame.camera[a] - hi[a]), 0.0);
+        to_box += gap * gap;
+    }
     f64 distance = MAX(sqrt(to) - mesh->radius * scale, p->frame.camera[3]);
+    distance = MAX(distance, sqrt(to_box));
     f64 half_height = sqrt((f64)p->frame.ray_up[0] * p->frame.ray_up[0] +
                            (f64)p->frame.ray_up[1] * p->frame.ray_up[1] +
                            (f64)p->frame.ray_up[2] * p->frame.ray_up[2]);
@@ -169,7 +184,7 @@ TEST(systems_packet, level_of_detail_follows_the_error_on_the_screen) {
         }
         assert_int_equal(triangles, p->counts.triangles);
     }
-    for (u32 lod = 0; lod < MESH_LODS_CAP; lod++) assert_true(seen[lod] > 20);
+    for (u32 lod = 0; lod < f->meshes[MESH_CUBE].lod_count; lod++) assert_true(seen[lod] > 20);
     systems_fixture_destroy(f);
 }
 
