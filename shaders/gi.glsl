@@ -27,6 +27,7 @@ layout(constant_id = SPEC_GI_FORMAT) const uint GI_FORMAT = 0;
 layout(constant_id = SPEC_GI_RESOLUTION) const uint GI_RESOLUTION = 0;
 layout(constant_id = SPEC_GI_TRACED) const uint GI_TRACED = 0;
 layout(constant_id = SPEC_GI_BRICKS) const uint GI_BRICKS = 0;
+layout(constant_id = SPEC_GI_WAVES) const uint GI_WAVES = 0;
 
 // --- Bindings ---
 

@@ -254,6 +254,10 @@ float gi_shadow_cone(vec3 start, vec3 direction, float tan_half, float first, fl
         .light.a;
 }
 
+#ifdef GI_WAVE
+#include "gi_cones_wave.glsl"
+#endif
+
 // The level's longest distance, m.
 float gi_reach() { return gi_cone_flow.z > 0.0 ? gi_cone_flow.z : 1e9; }
 
@@ -298,6 +302,13 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec2 lean, float first, floa
     vec3 along = u * inner.x + v * inner.y + normal * sqrt(1.0 - dot(inner, inner));
     if (GI_FACES != 0u) turn = gi_lean_turn(lean.y);
     if (GI_FACES == 0u) first *= gi_cone_first(tan_half);
+    bool is_on = count > 0u;
+#ifdef GI_WAVE
+    if (GI_WAVES != 0u) { // all lanes go through the cones that one of them wants
+        reach = is_on ? reach : 0.0;
+        count = wave_any(is_on) ? 6u : 1u;
+    }
+#endif
     if (count > 0u) for (uint i = 0u;;) {
         bool is_first = i == 0u;
         vec3 around = u * turn.x + v * turn.y;
@@ -308,8 +319,13 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec2 lean, float first, floa
         const vec2 step = vec2(0.309016994, 0.951056516);
         vec2 turned = vec2(turn.x * step.x - turn.y * step.y, turn.x * step.y + turn.y * step.x);
         turn = is_first ? turn : turned;
-        GiCone cone =
-            gi_cone(start, direction, tan_half, first, reach, GI_MIPS == GI_READ_THIRDS);
+        GiCone cone;
+#ifdef GI_WAVE
+        if (GI_WAVES != 0u)
+            cone = gi_cone_wave(start, direction, tan_half, first, reach);
+        else
+#endif
+            cone = gi_cone(start, direction, tan_half, first, reach, GI_MIPS == GI_READ_THIRDS);
         vec3 sky = mix(horizon, zenith, sqrt(clamp(direction.y, 0.0, 1.0)));
         sum.light += (cone.light.rgb + sky * max(1.0 - cone.light.a, 0.0)) * share;
         sum.visibility -= cone.occlusion * share;
@@ -317,6 +333,7 @@ GiHemisphere gi_hemisphere(vec3 start, vec3 normal, vec2 lean, float first, floa
         if (++i >= count) break;
     }
     sum.visibility = clamp(sum.visibility, 0.0, 1.0);
+    if (GI_WAVES != 0u && !is_on) sum = GiHemisphere(vec3(0.0), 1.0, 0.0);
     return sum;
 }
 #endif

@@ -2,6 +2,8 @@
 // gi_trace.comp: indirect light of the screen's pixels, or of one in 2 x 2 or 4 x 4
 // (gi_traced_pixel): cones from the surface that the G-buffer holds.
 #extension GL_GOOGLE_include_directive : require
+#include "subgroups.glsl"
+#define GI_WAVE
 #include "gi_screen.glsl"
 layout(local_size_x = 64) in; // 8 x 8 pixels
 

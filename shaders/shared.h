@@ -180,7 +180,8 @@ typedef struct MeshVertex {
 #define SPEC_GI_BRICKS     40 // 1 = the base volume has bricks where voxels are, 0 = it is whole
 #define SPEC_LIST_KINDS    41 // LIST_KIND_*: what shading by lists must be ready for
 #define SPEC_PALETTE_LANES 42 // tiled: materials that a lane keeps for its subgroup, 0 = none: too many
-#define SPEC_COUNT         43
+#define SPEC_GI_WAVES      43 // 1 = lanes of a subgroup, which has 8, read the atlas together (gi_cones_wave.glsl)
+#define SPEC_COUNT         44
 
 // GbufferLayout and DebugView of frame/settings.h as shaders say them (layouts.c compares).
 #define GBUFFER_LAYOUT_LEAN       0

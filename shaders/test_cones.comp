@@ -2,9 +2,12 @@
 // test_cones.comp: of tests/gpu: cones of a list through given volumes. A cone is 12 floats in the
 // accumulators: start, tan of half the aperture, direction, first, reach, 3 unused; what it brings
 // is 8 floats in the radiance: light, occlusion, steps, 2 unused. Step 1: hemispheres (direction is
-// the normal, the rest unused), which bring light and visibility.
+// the normal, the rest unused), which bring light and visibility. Step 2: as 0, eight side by side
+// (gi_cone_wave), which must have the same tan and first.
 #extension GL_GOOGLE_include_directive : require
+#include "subgroups.glsl"
 #define GI_BUILD
+#define GI_WAVE
 #include "gi.glsl"
 #include "gi_cones.glsl"
 layout(local_size_x = 64) in;
@@ -19,7 +22,12 @@ void main() {
     if (i >= gi_flow.counts.z) return;
     vec4 light;
     vec2 more;
-    if (GI_STEP == 0u) {
+    if (GI_STEP == 2u) {
+        GiCone cone = gi_cone_wave(numbers(i, 0u), numbers(i, 4u), number(i, 3u), number(i, 7u),
+                                   number(i, 8u));
+        light = cone.light;
+        more = vec2(cone.occlusion, cone.steps);
+    } else if (GI_STEP == 0u) {
         bool has_thirds = GI_MIPS == GI_READ_THIRDS && abs(number(i, 3u) - 0.57735) < 1e-4;
         GiCone cone = gi_cone(numbers(i, 0u), numbers(i, 4u), number(i, 3u), number(i, 7u),
                               number(i, 8u), has_thirds);

@@ -127,6 +127,13 @@ bool gi_makes_thirds(const Packet *packet) {
            tan_half <= 2.0f / 3.0f && step > 0.5595f && step < 0.6181f;
 }
 
+// Do the lanes of a subgroup read the atlas together (gi_cones_wave.glsl)? A GPU reads a texel that
+// several lanes want once anyway.
+bool gi_traces_by_waves(const Renderer *renderer, const Packet *packet) {
+    const GpuInfo *info = gpu_info(renderer->gpu);
+    return info->is_software && info->subgroup_size == 8 && gi_makes_thirds(packet);
+}
+
 // A texture that this packet does not use is as small as a 3D texture can be: its binding must hold
 // something.
 static void texture_shape(const Packet *packet, u32 brick_cap, RenderResource id, u32 out[4]) {

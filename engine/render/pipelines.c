@@ -460,7 +460,7 @@ static const PipelineRow rows[PIPELINE_COUNT] = {
                                                 SPEC_BIT(SPEC_GI_TRACED)},
     [PIPELINE_GI_TRACE] = {.label = "gi trace",
                            .compute = "gi_trace.comp",
-                           .spec_mask = SPEC_READ_VOXELS},
+                           .spec_mask = SPEC_READ_VOXELS | SPEC_BIT(SPEC_GI_WAVES)},
     [PIPELINE_GI_SMOOTH] = {.label = "gi smooth",
                             .compute = "gi_smooth.comp",
                             .spec_mask = SPEC_READ_VOXELS},
@@ -644,6 +644,7 @@ GpuPipeline pipeline_get(Renderer *renderer, const Packet *packet, PipelineKind 
         [SPEC_GI_RESOLUTION] = gi->resolution,
         [SPEC_GI_TRACED] = renderer->gi.traced_shadows,
         [SPEC_GI_BRICKS] = gi_has_bricks(packet),
+        [SPEC_GI_WAVES] = gi_traces_by_waves(renderer, packet),
     };
     if (kind == PIPELINE_FORWARD_BLEND || kind == PIPELINE_GI_FORWARD_BLEND) {
         // Blended surfaces lie before those that the device made its lists for.

@@ -496,6 +496,7 @@ void gi_dispatch_words(const PassContext *c, u64 invocations);
 // Does the picture ask for the irradiance of voxels?
 bool gi_wants_irradiance(const Packet *packet);
 bool gi_makes_thirds(const Packet *packet); // GI_READ_THIRDS
+bool gi_traces_by_waves(const Renderer *renderer, const Packet *packet); // SPEC_GI_WAVES
 // Makes what one dispatch of a pass wrote visible to the next; for resources in STORAGE_COMPUTE.
 void gi_barrier(const PassContext *c, const RenderResource *resources, u32 count);
 // Bytes of all that GI keeps on the device.

@@ -328,7 +328,11 @@ static void random_cones(const Volumes *v, u64 seed, Cone *cones) {
     }
 }
 
-static void check(u32 faces, u32 directions, u32 mips, f32 share) {
+enum { APART, SIDE_BY_SIDE };
+
+// how: SIDE_BY_SIDE as gi_cones_wave.glsl traces a hemisphere's; each second eight of them lie
+// close together, as neighbouring pixels' do.
+static void check_as(u32 how, u32 faces, u32 directions, u32 mips, f32 share) {
     static Volumes v;
     static Cone cones[CONES];
     static Result results[CONES];
@@ -336,7 +340,15 @@ static void check(u32 faces, u32 directions, u32 mips, f32 share) {
     volumes_make(&v, faces, directions, mips, share, seed);
     if (mips == GI_READ_THIRDS) thirds_make(&v);
     random_cones(&v, seed, cones);
-    trace(&v, cones, 0, results);
+    for (u32 i = 0; i < CONES && how == SIDE_BY_SIDE; i++) {
+        cones[i].tan_half = WIDE_TAN;
+        cones[i].first = 0.866025f;
+        for (u32 a = 0; a < 3 && i / 8 % 2 == 1; a++) {
+            cones[i].start[a] = cones[i & ~7u].start[a] + (f32)(i & 7) * 0.02f;
+            cones[i].direction[a] = cones[i & ~7u].direction[a];
+        }
+    }
+    trace(&v, cones, how == SIDE_BY_SIDE ? 2 : 0, results);
     u32 other_steps = 0, traced = 0;
     for (u32 i = 0; i < CONES; i++) {
         Result want = twin(&v, &cones[i]);
@@ -357,9 +369,19 @@ static void check(u32 faces, u32 directions, u32 mips, f32 share) {
     arena_destroy(&v.arena);
 }
 
+static void check(u32 faces, u32 directions, u32 mips, f32 share) {
+    check_as(APART, faces, directions, mips, share);
+}
+
 TEST_GPU(gi_cones, directional_as_the_twin) { check(0, 6, 0, 0.2f); }
 TEST_GPU(gi_cones, nearest_mips_as_the_twin) { check(0, 6, 1, 0.2f); }
 TEST_GPU(gi_cones, thirds_as_the_twin) { check(0, 6, GI_READ_THIRDS, 0.2f); }
+TEST_GPU(gi_cones, side_by_side_as_the_twin) {
+    Gpu *gpu = gpu_fixture_create("cones");
+    u32 lanes = gpu_info(gpu)->subgroup_size;
+    gpu_fixture_destroy(gpu);
+    if (lanes == 8) check_as(SIDE_BY_SIDE, 0, 6, GI_READ_THIRDS, 0.2f); // else nobody traces so
+}
 TEST_GPU(gi_cones, isotropic_as_the_twin) { check(0, 1, 0, 0.2f); }
 TEST_GPU(gi_cones, faces_apart_as_the_twin) { check(1, 6, 0, 0.1f); }
 TEST_GPU(gi_cones, faces_apart_nearest_as_the_twin) { check(1, 6, 1, 0.1f); }
