@@ -1,5 +1,6 @@
 // gi_walls.c: what filtering must keep, in whole frames: a uniform wall its radiance (level
-// uniform_wall), two walls back to back their colours (level red_green_wall). The filter alone, in
+// uniform_wall), two walls back to back their colours (level red_green_wall), a closed room of one
+// brightness all its light (level white_furnace). The filter alone, in
 // all directions: tests/gpu/gi_filter.c.
 // Data in: levels, settings. Data out: figures, pass or fail. Called by: the runner.
 #include "studio.h"
@@ -8,6 +9,7 @@
 #include <string.h>
 
 enum { WIDTH = 64, HEIGHT = 36, SIDE = 64 }; // SIDE: of the levels' grids
+#define FURNACE_RADIANCE 0.45
 
 static f32 from_half(u16 half) { // not negative, finite
     u32 exponent = half >> 10, fraction = half & 0x3FF;
@@ -49,6 +51,30 @@ TEST_GPU(gi_walls, red_and_green) {
     }
     assert_true(worst[1] < 0.02 && worst[1] < worst[0]);
     assert_true(worst[2] < 0.005);
+    studio_close(&studio);
+}
+
+// In a room whose walls all shine alike, as much arrives everywhere. What faces apart lack, each
+// bounce lacks again.
+TEST_GPU(gi_walls, white_furnace) {
+    Studio studio;
+    studio_open(&studio, "data/levels/white_furnace.toml");
+    static const struct {
+        const char *list;
+        f64 least, most;
+    } ways[] = {
+        {"gi.enabled=on,gi.faces=shared", 0.98, 1.02},
+        {"gi.enabled=on,gi.faces=apart", 0.9, 1.0},
+        {"gi.enabled=on,gi.faces=apart,gi.step_factor=0.2", 0.89, 1.0},
+    };
+    for (u32 i = 0; i < COUNT_OF(ways); i++) {
+        f64 arrives[3];
+        indirect(&studio, "main", ways[i].list, arrives);
+        printf("%-50s %.3f of the light\n", ways[i].list, arrives[0] / FURNACE_RADIANCE);
+        assert_true(arrives[0] > ways[i].least * FURNACE_RADIANCE);
+        assert_true(arrives[0] < ways[i].most * FURNACE_RADIANCE);
+        assert_true(arrives[1] == arrives[0] && arrives[2] == arrives[0]);
+    }
     studio_close(&studio);
 }
 

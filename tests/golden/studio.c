@@ -14,6 +14,7 @@ const char *const studio_levels[] = {
     "data/levels/plane_test.toml",     "data/levels/emissive_teapot.toml",
     "data/levels/moving_door.toml",    "data/levels/sealed_room.toml",
     "data/levels/red_green_wall.toml", "data/levels/uniform_wall.toml",
+    "data/levels/white_furnace.toml",
 };
 const u32 studio_level_count = COUNT_OF(studio_levels);
 

@@ -239,8 +239,8 @@ LightSum light_twin(const VoxelScene *stage, u32 slot) {
     for (u32 f = 0; f < 6; f++) most = MAX(most, face_share(&v, f));
     for (u32 f = 0; f < faces; f++) {
         bool is_solid = faces == 1 || most == 0.0f;
-        // Backs are dark, and count by their share.
-        sum.opacity[f] = is_solid ? 1.0f : MAX(face_share(&v, f), v.share[f ^ 1]);
+        // Backs are dark, and count by a part of their share.
+        sum.opacity[f] = is_solid ? 1.0f : MAX(face_share(&v, f), 0.6f * v.share[f ^ 1]);
         for (u32 k = 0; k < 3; k++) {
             f32 sent = v.emission[k] + v.albedo[k] * sum.face[f][k] * 0.318309886f;
             sum.face[f][k] = faces > 1 ? sent * weight[f] : sent;
