@@ -6,14 +6,15 @@
 //   2  a group for GI_PARENT_CHUNKS rows of 32 x 2 x 2 voxels: each eight voxels with one that is
 //      occupied make the texel over them, from the base volume to level 0 of the atlas or (faces apart) from its
 //      level 0 to level 1.
+//   3  both 0 and 2, where a row is whole words: a group's own voxels make all of its texels.
 // Included by gi_filter_base.comp and gi_filter_base_byte.comp.
 #define GI_BUILD
 #include "gi_filter.glsl"
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = BUILD_BASE_STORAGE, GI_STORAGE_FORMAT) uniform image3D base;
-layout(set = 0, binding = BUILD_MIP_SOURCE, GI_STORAGE_FORMAT) uniform image3D source;
-layout(set = 0, binding = BUILD_MIP_TARGET, GI_STORAGE_FORMAT) uniform image3D target;
+layout(set = 0, binding = BUILD_BASE_STORAGE, GI_STORAGE_FORMAT) coherent uniform image3D base;
+layout(set = 0, binding = BUILD_MIP_SOURCE, GI_STORAGE_FORMAT) coherent uniform image3D source;
+layout(set = 0, binding = BUILD_MIP_TARGET, GI_STORAGE_FORMAT) coherent uniform image3D target;
 
 ivec3 place_of_bit(uint bit) {
     uint row = bit / gi_flow.dims.x, slice = row / gi_flow.dims.y;
@@ -84,6 +85,29 @@ uint chunk_row(uvec3 place, uint width) {
     return word >> (bit & 31u) & (0xffffffffu >> (32u - width));
 }
 
+// Step 0 for four rows of whole words. What is zero over them and has something below is made anew
+// after the barrier. The software driver runs the body of a loop that begins with its test once more
+// than it should: one loop, not four.
+void forget_rows(uvec3 place, uvec4 now) {
+    uint first = GI_MASK_LIT * gi_layer_words() + (gi_bit(place) >> 5);
+    uint row = gi_flow.dims.x >> 5, slice = row * gi_flow.dims.y;
+    uvec4 words = first + uvec4(0u, row, slice, slice + row);
+    uvec4 lit = uvec4(gi_masks[words.x], gi_masks[words.y], gi_masks[words.z], gi_masks[words.w]);
+    gi_masks[words.x] = now.x;
+    gi_masks[words.y] = now.y;
+    gi_masks[words.z] = now.z;
+    gi_masks[words.w] = now.w;
+    uvec4 gone = lit & ~now;
+    while (gone != uvec4(0u)) {
+        uint i = gone.x != 0u ? 0u : gone.y != 0u ? 1u : gone.z != 0u ? 2u : 3u;
+        uint word = gone.x != 0u ? gone.x : gone.y != 0u ? gone.y : gone.z != 0u ? gone.z : gone.w;
+        forget(ivec3(place + uvec3(uint(findLSB(word)), i & 1u, i >> 1)));
+        word &= word - 1u;
+        gone = uvec4(i == 0u ? word : gone.x, i == 1u ? word : gone.y, i == 2u ? word : gone.z,
+                     i == 3u ? word : gone.w);
+    }
+}
+
 void list_parents() {
     uvec4 dims = gi_flow.dims;
     uint width = min(dims.x, 32u), across = dims.x / width;
@@ -96,10 +120,13 @@ void list_parents() {
         uvec3 place = uvec3((chunk - row * across) * width, (row - slice * (dims.y >> 1)) * 2u,
                             slice * 2u);
         uint found = 0u;
-        if (chunk < chunks)
-            found = chunk_row(place, width) | chunk_row(place + uvec3(0u, 1u, 0u), width) |
-                    chunk_row(place + uvec3(0u, 0u, 1u), width) |
-                    chunk_row(place + uvec3(0u, 1u, 1u), width);
+        if (chunk < chunks) {
+            uvec4 rows = uvec4(chunk_row(place, width), chunk_row(place + uvec3(0u, 1u, 0u), width),
+                               chunk_row(place + uvec3(0u, 0u, 1u), width),
+                               chunk_row(place + uvec3(0u, 1u, 1u), width));
+            found = rows.x | rows.y | rows.z | rows.w;
+            if (GI_STEP == 3u) forget_rows(place, rows);
+        }
         found = (found | found >> 1) & 0x55555555u;
         uint at = atomicAdd(parent_count, uint(bitCount(found)));
         if (found != 0u) for (;;) {
@@ -109,6 +136,7 @@ void list_parents() {
             if (found == 0u) break;
         }
     }
+    if (GI_STEP == 3u) memoryBarrierImage();
     barrier();
 }
 
@@ -144,7 +172,7 @@ void main() {
         forget_word();
         return;
     }
-    if (GI_STEP == 2u) {
+    if (GI_STEP >= 2u) {
         list_parents();
         uint i = gl_LocalInvocationIndex, end = parent_count;
         if (i < end) for (;;) {

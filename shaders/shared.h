@@ -133,7 +133,10 @@ typedef struct MeshVertex {
 #define BUILD_MIP_SOURCE    28 // storage image: a level of the atlas
 #define BUILD_MIP_TARGET    29 // the next one
 #define BUILD_BRICKS_STORAGE 30 // storage image rgba8 of BUILD_BRICKS
-#define BUILD_COUNT         31
+#define BUILD_MIP_TARGET_1  31 // those after BUILD_MIP_TARGET, up to the last level
+#define BUILD_MIP_TARGET_2  32
+#define BUILD_MIP_TARGET_3  33
+#define BUILD_COUNT         34
 
 // --- Specialisation constants (feature switches: an off feature behind a uniform costs as much
 // as on, on the software driver). ---
@@ -325,6 +328,7 @@ typedef struct MeshVertex {
 #define GI_SUM_WORDS         19
 #define GI_RANK_WORDS        4    // words of the masks that share a rank
 #define GI_RANK_BLOCK        2048 // words of the masks that a group counts
+#define GI_MIP_TAIL          4    // levels that one group of the filter makes, at most
 #define GI_PARENT_CHUNKS     128  // rows of 32 x 2 x 2 voxels that a group of the filter goes through
 // BUILD_COUNTERS goes on behind its counters: set bits of each block of words.
 #define GI_COUNTER_BLOCKS    GI_COUNTER_COUNT

@@ -474,6 +474,10 @@ static void bind_build(const Renderer *r, GpuBinding *b, u32 level) {
     b[BUILD_MIP_SOURCE] = b[BUILD_MIP_TARGET] = texture(r, RESOURCE_GI_ATLAS, none);
     b[BUILD_MIP_SOURCE].mip = level > 0 ? level - 1 : 0;
     b[BUILD_MIP_TARGET].mip = level;
+    for (u32 i = 0; i < GI_MIP_TAIL - 1; i++) {
+        b[BUILD_MIP_TARGET_1 + i] = b[BUILD_MIP_TARGET];
+        b[BUILD_MIP_TARGET_1 + i].mip = MIN(level + 1 + i, r->gi.atlas[3] - 1);
+    }
 }
 
 static void bind_screen(const Renderer *r, GpuBinding *b) {

@@ -36,7 +36,10 @@ const Pass gi_fresh_pass = {
     fresh_record,
     is_fresh};
 
-enum { STEP_FORGET, STEP_SCATTER, STEP_PARENTS };
+enum { STEP_FORGET, STEP_SCATTER, STEP_PARENTS, STEP_FORGET_AND_PARENTS };
+
+// One group makes the last levels, from the first of which it has so many texels at most.
+#define TAIL_TEXELS 4096
 
 // Level of the atlas that STEP_PARENTS writes; what is before it is the voxels' own: the base
 // volume, which gi_light.c writes, or level 0 by STEP_SCATTER.
@@ -58,7 +61,17 @@ u32 gi_parent_groups(const u32 dims[4]) {
     return (u32)((voxels / row + GI_PARENT_CHUNKS - 1) / GI_PARENT_CHUNKS);
 }
 
-static void levels_record(const PassContext *c) {
+// What moved leaves its light behind, and what was voxelised anew.
+static bool must_forget(const PassContext *c) {
+    const GiState *gi = &c->renderer->gi;
+    return gi->voxelise_static || gi->voxelise_dynamic || gi->is_fresh;
+}
+// A group of parents forgets as well, if the rows that it goes through are whole words.
+static bool forgets_with_parents(const PassContext *c) {
+    return c->packet->gi.record.dims[0] >= 32;
+}
+
+static void levels_record(const PassContext *c, bool forgets) {
     const GiRecord *record = &c->packet->gi.record;
     u32 blocks = c->packet->gi.params.filter == GI_FILTER_ISOTROPIC ? 1 : 6;
     u32 cascades = record->dims[3], first = parent_level(c);
@@ -67,13 +80,23 @@ static void levels_record(const PassContext *c) {
         gi_dispatch_slots(c, GI_COUNTER_ALL_ARGS);
         images_barrier(c);
     }
-    gi_bind_build(c, base_pipeline(c, STEP_PARENTS), first);
+    gi_bind_build(c, base_pipeline(c, forgets ? STEP_FORGET_AND_PARENTS : STEP_PARENTS), first);
     gpu_cmd_dispatch(c->cmd, gi_parent_groups(record->dims), 1, 1);
     images_barrier(c);
     GpuPipeline mip = pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_MIP, PIPELINE_PLAIN);
     for (u32 level = first + 1; level < record->atlas[3]; level++) {
         u32 x = (record->atlas[0] >> level) * blocks, y = record->atlas[1] >> level;
         u32 z = (record->atlas[2] >> level) * cascades;
+        u32 left = record->atlas[3] - level;
+        if (left > 1 && left <= GI_MIP_TAIL && x * y * z <= TAIL_TEXELS) {
+            gi_bind_build(c,
+                          pipeline_get(c->renderer, c->packet, PIPELINE_GI_FILTER_TAIL,
+                                       (PipelineVariant){.post = left}),
+                          level);
+            gpu_cmd_dispatch(c->cmd, 1, 1, 1);
+            gi_barrier(c, (RenderResource[]){RESOURCE_GI_ATLAS}, 1);
+            break;
+        }
         gi_bind_build(c, mip, level);
         gpu_cmd_dispatch(c->cmd, (x + 7) / 8, (y + 3) / 4, (z + 1) / 2);
         gi_barrier(c, (RenderResource[]){RESOURCE_GI_ATLAS}, 1);
@@ -88,18 +111,16 @@ static void levels_record(const PassContext *c) {
     }
 }
 
-// What moved leaves its light behind, and what was voxelised anew.
 static void forget(const PassContext *c) {
-    const GiState *gi = &c->renderer->gi;
-    if (!gi->voxelise_static && !gi->voxelise_dynamic && !gi->is_fresh) return;
     gi_bind_build(c, base_pipeline(c, STEP_FORGET), parent_level(c));
     gi_dispatch_words(c, voxel_count(c) / 32);
     images_barrier(c);
 }
 
 static void filter_record(const PassContext *c) {
-    forget(c);
-    levels_record(c);
+    bool together = must_forget(c) && forgets_with_parents(c);
+    if (must_forget(c) && !together) forget(c);
+    levels_record(c, together);
 }
 
 #define FILTER_USES                                                                                \
@@ -115,6 +136,6 @@ static void refilter_record(const PassContext *c) {
     if (gi_feeds_back(c))
         filter_record(c);
     else
-        levels_record(c);
+        levels_record(c, false);
 }
 const Pass gi_refilter_pass = {"voxel filter 2", FILTER_USES, 8, refilter_record, gi_bounces};

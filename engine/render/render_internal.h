@@ -160,6 +160,7 @@ typedef enum PipelineKind {
     PIPELINE_GI_LIGHT,
     PIPELINE_GI_FILTER_BASE, // level 0 of the atlas
     PIPELINE_GI_FILTER_MIP,
+    PIPELINE_GI_FILTER_TAIL,   // step: how many of the last mips
     PIPELINE_GI_FILTER_THIRDS, // between its levels; step: number of the finer one & 1
     PIPELINE_GI_BOUNCE,
     PIPELINE_GI_IRRADIANCE, // of voxels, for diffuse = voxels
